@@ -144,8 +144,9 @@ class StubEngine:
         started = time.monotonic()
         self.requests.append(request)
         if isinstance(request, GenerateRequest):
-            go_on = cancel.raise_if_cancelled if cancel is not None else lambda: None
-            as_scene(request, go_on)  # sentences are read as by the engine itself
+            if cancel is not None:
+                cancel.raise_if_cancelled()
+            as_scene(request)  # sentences are read as by the engine itself
         if isinstance(request, PredictRequest):
             yield Progress(stage="sample", step=1, total=1, unit="pass")
             yield drift(request)

@@ -86,7 +86,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
     ) -> Iterator[Progress | Result]:
         """A sentence, made as a scene where it has several beats or a plan."""
         assert request.plan is not None
-        split, plan = as_scene(request, cancel.raise_if_cancelled), request.plan
+        split, plan = as_scene(request), request.plan
         if split is None:
             plan = plan if plan.of_result else _unsplit(plan, request.planned)
             events = super().run(replace(request, plan=plan), cancel, timer)

@@ -73,10 +73,10 @@ class SceneRequest(SamplingRequest):
         self._check(methods.method(self.model, "scene"))
         set_(self, "beats", tuple(self.beats))
         self._check_beats()
-        if self.motion is None:
-            self._check_alone()
-        else:
+        if self.motion is not None:
             self._check_motion(self.motion)
+        elif self.start is not None or self.end is not None:
+            raise InputError("A start or an end belongs to a given motion: give the motion too, or leave them out.")
         self._time_beats()
         if self.total_seconds > MOST_SECONDS + 1e-6:
             raise InputError(
@@ -101,10 +101,6 @@ class SceneRequest(SamplingRequest):
             beat.check(place)
             if self.motion is None and not beat.sentence:
                 raise InputError(f"Beat {place} has no words: say what happens in it, or delete it.")
-
-    def _check_alone(self) -> None:
-        if self.start is not None or self.end is not None:
-            raise InputError("A start or an end belongs to a given motion: give the motion too, or leave them out.")
 
     def _check_motion(self, motion: Duet) -> None:
         set_ = object.__setattr__

@@ -265,16 +265,14 @@ LEAST_SHARE = 1.25
 """Seconds for each beat of a sentence below which it is made in one."""
 
 
-def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None) -> SceneRequest | None:
+def as_scene(request: GenerateRequest) -> SceneRequest | None:
     """The scene of a sentence with several beats, which share the request's seconds, or of one with a plan or paths.
 
     None if the sentence is given to the network as it is, as one whose beats would be longer than a prompt. A request
-    with the plan of a result has its beats from there. ``go_on`` is called before the sentence is read; what it raises
-    ends the reading.
+    with the plan of a result has its beats from there.
     """
     if not request.split or "scene" not in methods.method(request.model).tasks:
         return None
-    go_on()
     request = request.with_plan()
     assert request.plan is not None
     whole, replays = request.plan.acts[0], request.plan.of_result
