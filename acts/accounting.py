@@ -385,7 +385,8 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
     comes = goes is not None and goes.way == "to" and act.direction == "up"  # "walks up to"
-    if act.direction is not None and act.direction not in words and "way" not in names and not comes:
+    leaves = act.direction in ("away", "back") and not names.isdisjoint(("backs", "walks_away"))  # "backs away"
+    if act.direction is not None and act.direction not in words and "way" not in names and not (comes or leaves):
         yield "which way", _goes_way(act, who) if goes else ""
     if abs(act.speed - 1.0) > 0.15:
         yield "how fast", _at_speed(act.speed, goes, who) if goes else ""
@@ -421,7 +422,7 @@ def plain(act: Act, kinds: frozenset[str]) -> Act:
         "which side": {"side": None, "part_side": None},
         "with both hands": {"side": None},
         "on both sides": {"side": None},
-        "which way": {"direction": None},
+        "which way": {"direction": None, "side": None if act.side == act.direction else act.side},
         "how fast": {"manner": ()},
         "in which manner": {"manner": ()},
         "from where": {"manner": ()},

@@ -157,7 +157,8 @@ def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Map
 
     What shows it must come later than the first stretch that shows the other, so that a motion which shows both at
     once shows no order: each by its middle, or its first second, where it lasts, and an attitude by its beginning.
-    What is no attitude may also have begun before, where it goes on for a second after the other is over.
+    What is no attitude may also have begun before, where it goes on for a second after the other is over. An answer may
+    come at once, as a fall does with a push, and who kneels twice may stay on their knees.
     """
     acts = {other.id: other for other in plan.acts}
     earlier = [acts[name] for name in _chain(act, plan) if name in before and before[name].done]
@@ -173,7 +174,9 @@ def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Map
         if theirs is None or last is None or _is_all_along(theirs, motion):
             continue
         first = theirs[0] if _is_attitude(known.entries[other.act]) else _middle(theirs, motion)
-        goes_on = not begins and last >= theirs[1] + motion.fps
+        answers = known.entries[act.act].answers and act.agents == (other.patient,) and last > theirs[0]
+        stays = begins and _seen(other, known) == _seen(act, known) and last >= theirs[0] + motion.fps
+        goes_on = answers or stays or (not begins and last >= theirs[1] + motion.fps)
         if max(moments) <= first + _LATER * motion.fps and not goes_on:
             return f"does not come after “{before[other.id].words}”"
     same = [other for other in told if (other.act, other.agents) == (act.act, act.agents)]

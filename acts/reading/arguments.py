@@ -136,13 +136,13 @@ class Arguments:
 
     def _argument(self, token: Token, who: str, event: Event) -> Ref:
         self.seen.add(token.i)
-        within = next((c for c in token.children if c.dep_ == "compound"), None)
+        within = next((c for c in token.children if c.dep_ == "compound" or c.lower_ == "other"), None)
         way = self._words.directions.get(token.lower_)
         moved = within is not None and way is not None and self._words.part(within.lemma_.lower())
         if within is not None and (moved or way in closed("of the clock")):
             event.words += [token.lower_] if moved else []
             self._direction(token.lower_, event)
-            token = within  # "in a circle clockwise", "waves the hand sideways"
+            token = within  # "in a circle clockwise", "around the other clockwise", "waves the hand sideways"
         if (part := self._named_by(token)) is not None:
             token = part
         person = self._words.is_person(token.lemma_.lower())

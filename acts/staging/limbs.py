@@ -161,9 +161,9 @@ def _turned_out(limb: Limb, held: Array, since: Array) -> Turns:
 
 def _reached_down(limb: Limb, held: Array, since: Array) -> Turns:
     down = _pulses(since, held, limb.times or 1, 3.0) ** 0.5
-    legs = {"hip": -1.6, "knee": 1.9, "ankle": -0.45, "shoulder": -0.75}
+    legs = {"hip": -1.8, "knee": 2.0, "ankle": -0.45, "shoulder": -2.0}
     bent = {f"{side}_{name}": about(0, a * down) for side in ("left", "right") for name, a in legs.items()}
-    return bent | {joint: about(0, 0.3 * down) for joint in ("spine1", "spine2")}
+    return bent | {joint: about(0, 0.5 * down) for joint in ("spine1", "spine2", "spine3")}
 
 
 def _tiptoes(limb: Limb, held: Array, since: Array) -> Turns:

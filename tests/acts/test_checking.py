@@ -177,6 +177,14 @@ def test_who_follows_begins_before_the_other_has_gone() -> None:
     assert [v.done for v in checked(plan(goes, follows), motion)] == [True, True]
 
 
+def test_an_answer_may_come_at_once_and_who_kneels_may_stay_on_their_knees() -> None:
+    falls = duet(gap=1.0)
+    falls.positions[1, 40:, :, 1] *= 0.15
+    assert verdicts("A pushes B over, and B falls down.", falls) == [True, True]
+    assert verdicts("A crouches down, then A crouches down.", sits(slice(40, 120))) == [True, True]
+    assert verdicts("A crouches down, then B crouches down.", sits(slice(40, 120), slice(40, 120))) == [True, False]
+
+
 def test_before_is_after_the_other_way_round() -> None:
     leg, arm = told("raise-leg", 1, order=(Relation(kind="before", act="2"),)), told("raise-arm", 2)
     assert [v.done for v in checked(plan(leg, arm), arm_then_leg())] == [True, False]

@@ -24,6 +24,7 @@ from acts.checking import checked
 from acts.lexicon import Entry
 from acts.shapes import Shape
 from acts.staging import given as staging
+from acts.staging.poses import JOINT
 from acts.staging.window import KnownPath, Part
 from motion import Duet
 from webdemo.inference.pipelines import window
@@ -73,7 +74,8 @@ def gives_poses(shape: Shape) -> bool:
 
 def places_of(parts: Sequence[Part]) -> list[Part]:
     """The places and headings of parts (in the network's frame), without their poses."""
-    return [part for part in staging.places_of(staging.softened(parts)) if isinstance(part, KnownPath)]
+    left = staging.places_of(staging.softened(parts))
+    return [part for part in left if isinstance(part, KnownPath) or tuple(part.joints) == (JOINT["pelvis"],)]
 
 
 def wordings(act: Act, entry: Entry) -> list[str]:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .joints import Array, Motion
+from .paths import sideways
 from .poses import _lift, _wrist_speed
 from .shapes import lean_to
 from .touches import _hand_gaps, to_joints
@@ -80,9 +81,10 @@ _TABLE: dict[str, Callable[..., str]] = {
     "faces": lambda m, who, *_, **__: f"{_NAMES[who]} faces {m.off(who).min():.0f}° away from {_NAMES[1 - who]}",
     "orbits": lambda m, who, *_, **__: f"{_NAMES[who]} goes {_round(m, who):.0f}° around",
     # ---- ways ----------------------------------------------------------------------------------------
-    "walks goes_ahead goes_way goes_metres sidesteps steps_aside passes follows": (
+    "walks goes_ahead goes_metres sidesteps steps_aside passes follows": (
         lambda m, who, *_, **__: f"{_NAMES[who]} goes {_gone(m, m.speeds[who])}"
     ),
+    "goes_way": lambda m, who, way, *_, **__: f"{_NAMES[who]} goes {_gone(m, sideways(m, who, way))} to the {way}",
     "runs": lambda m, who, *_, **__: f"{_NAMES[who]} reaches {m.speeds[who].max():.1f} m/s",
     "walks_to": lambda m, who, *_, **__: f"{_NAMES[who]} comes {_gone(m, _nearer(m, who))} nearer",
     "walks_away": lambda m, who, *_, **__: f"{_NAMES[who]} goes {_gone(m, -_nearer(m, who))} away",

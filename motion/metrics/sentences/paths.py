@@ -84,8 +84,12 @@ def steps_aside(m: Motion, who: int, way: str = "any", metres: float = 0.25) -> 
 @predicate
 def goes_way(m: Motion, who: int, way: str, metres: float = 0.3) -> Mask:
     """Goes by ``metres`` or more to the "left" or "right" of where the person first faced."""
-    sign = {"left": 1.0, "right": -1.0}[way]
-    return _gained(m, sign * (m.velocities[who] @ m.left(who)[0]), metres, 0.12)
+    return _gained(m, sideways(m, who, way), metres, 0.12)
+
+
+def sideways(m: Motion, who: int, way: str) -> Array:
+    """(T,) m/s to the "left" or "right" of where somebody first faced."""
+    return {"left": 1.0, "right": -1.0}[way] * (m.velocities[who] @ m.left(who)[0])
 
 
 @predicate
@@ -116,14 +120,14 @@ def passes(m: Motion, who: int, metres: float = 0.4) -> Mask:
 
 
 @predicate
-def follows(m: Motion, who: int, metres: float = 0.7) -> Mask:
-    """Walks after the other, who walks ahead with their back to this one."""
+def follows(m: Motion, who: int, metres: float = 0.7, away: float = 100.0) -> Mask:
+    """Walks after the other, who walks ahead and faces ``away`` degrees or more away from this one."""
     other = 1 - who
     mine, theirs = m.velocities[who], m.velocities[other]
     line = m.towards(who)
     ahead = np.sum(theirs * line, axis=-1) > 0.15
     after = np.sum(mine * line, axis=-1) > 0.7 * m.speeds[who]
-    mask = ahead & after & (m.speeds[who] > 0.2) & (m.off(other) > 100)
+    mask = ahead & after & (m.speeds[who] > 0.2) & (m.off(other) >= away)
     return keep(mask, m.fps, lambda i, j: m.speeds[who][i:j].sum() / m.fps >= metres)
 
 

@@ -24,9 +24,10 @@ def test_of_poses_the_places_are_left() -> None:
     assert same is way and isinstance(path, KnownPath) and path.frames == [0, 32, 60]
     np.testing.assert_allclose(path.places, poses[[0, 8, 15], 0][:, [0, 2]])
     assert path.turned and path.headings == pytest.approx([0.5] * 3)
-    low = KnownFrames(0, frames, poses - [0.0, 0.6, 0.0])
-    (path,) = places_of([low])
+    low, path = places_of([KnownFrames(0, frames, poses - np.outer(np.arange(16) > 7, [0.0, 0.6, 0.0])[:, None])])
+    assert isinstance(low, KnownFrames) and low.joints == (0,) and low.frames == frames[8:]
     assert isinstance(path, KnownPath) and not path.turned and path.headings is None, "the hips of who lies say nothing"
+    assert path.frames == [0, 28]
 
 
 @pytest.mark.parametrize(
