@@ -42,7 +42,7 @@ PUMPS = (
     *(" ", "a", "1", ",", "\n", "(", '"', "-", "é", "\t\n", "[[a]]\n", "a ", "as ", "the ", ", ", ". ", "A ", "B. "),
     *("a's ", "aly ", "slowly ", "and ", "person a ", "the other person ", "is ", "aing ", "1 ", "1e", "0.", "a=a "),
 )
-ENDS = ("", "\0", "!", " \n")
+ENDS = ("", "\0", " \n")
 
 Pattern = re.Pattern[Any]
 

@@ -7,6 +7,7 @@ import pytest
 from acts import read
 from acts.accounting import account, unread_words
 from acts.checking import checked
+from acts.qualifiers import plain
 from tests.motion.metrics.test_sentence_shapes import duet, put
 from webdemo.inference.engine import note
 
@@ -58,11 +59,16 @@ def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str,
         ("A tickles B with both hands.", ("with both hands",)),
         ("A points at B and then at himself.", ("“at himself”",)),
         ("They walk up to each other.", ()),
+        ("A backs away from B.", ()),
     ],
 )
 def test_qualifiers_that_nothing_measures_are_named(sentence: str, kinds: tuple[str, ...]) -> None:
     (found,) = checked(read(sentence), duet())
     assert found.unchecked == kinds
+
+
+def test_a_way_that_nothing_measures_is_no_hand() -> None:
+    assert plain(read("A jumps to the right.").acts[0], frozenset(["which way"])).side is None
 
 
 def test_what_is_done_is_said_without_what_was_not_measured() -> None:

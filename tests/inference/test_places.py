@@ -98,7 +98,7 @@ def test_random_paths_are_possible(follower: Follower) -> None:
     draw = np.random.default_rng(7)
     beats = (Beat("They shake hands.", seconds=2.0), Beat("They walk away.", seconds=3.0))
     tried = 0
-    for _ in range(60):
+    for _ in range(24):
         times = np.sort(draw.choice(np.arange(0, 49), 4, replace=False)) / 10
         steps = draw.uniform(-2.0, 2.0, (4, 2)) * np.diff(times, prepend=times[0] - 1)[:, None]
         points = draw.uniform(-3, 3, 2) + np.cumsum(steps, axis=0)
@@ -112,7 +112,7 @@ def test_random_paths_are_possible(follower: Follower) -> None:
             continue
         tried += 1
         assert speeds(follower.scene(request).duets[0].positions).max() < FASTEST
-    assert tried > 40
+    assert tried > 15
 
 
 SENTENCES = [sentence.words for sentence in load_sentences()]
@@ -126,10 +126,10 @@ CARRIES = [
 ]
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_what_words_plan_is_possible(follower: Follower, seed: int) -> None:
     draw = np.random.default_rng(seed)
-    for _ in range(12):
+    for _ in range(8):
         words = [*draw.choice(SENTENCES, 2), draw.choice(CARRIES)]
         draw.shuffle(words)
         made = follower.scene(SceneRequest(beats=tuple(map(Beat, words)), seed=seed)).duets[0].positions
