@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from acts import read
-from acts.accounting import account, unread_words
+from acts.accounting import account, plain, unread_words
 from acts.checking import checked
-from acts.qualifiers import plain
+
 from tests.motion.metrics.test_sentence_shapes import duet, put
 from webdemo.inference.engine import note
 

@@ -27,7 +27,7 @@ from acts.staging import given as staging
 from acts.staging.poses import JOINT
 from acts.staging.window import KnownPath, Part
 from motion import Duet
-from webdemo.inference.pipelines import window
+from webdemo.inference.pipelines import scene
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.run import Result
 from webdemo.inference.story.beats import Beat
@@ -164,8 +164,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         assert isinstance(result, Result) and isinstance(result.duets[0], Duet)
         return result.duets[0]
 
-    planned, made = window.plan_parts, list[Made]()
-    window.plan_parts = lambda *asked: places_of(planned(*asked))
+    planned, made = scene.plan_parts, list[Made]()
+    scene.plan_parts = lambda *asked: places_of(planned(*asked))
     for name, entry in lexicon().entries.items():
         given = entry.shown and entry.rule and any(map(gives_poses, entry.stage))
         if not given or (options.only and name not in options.only):
