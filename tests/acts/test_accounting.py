@@ -7,7 +7,6 @@ import pytest
 from acts import read
 from acts.accounting import account, plain, unread_words
 from acts.checking import checked
-
 from tests.motion.metrics.test_sentence_shapes import duet, put
 from webdemo.inference.engine import note
 
