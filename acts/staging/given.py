@@ -17,11 +17,11 @@ from motion.placement import Placement
 from motion.transforms import heading
 from motion.vectors import Array
 
-from .arms import hand_parts, outer_hand_parts
 from .beginnings import Room, Take, beginning, going, roomy, starting
 from .figures import figure_parts, figure_poses
 from .floor import plan
 from .gaits import STEPS, low_gait_parts, step_parts
+from .gestures import hand_parts, outer_hand_parts
 from .holds import hold_parts, pull_parts, twirl_parts
 from .lifts import Carrying
 from .limbs import limb_parts

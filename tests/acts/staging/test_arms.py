@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from acts.shapes import Gesture
-from acts.staging.arms import arm, hanging, hangs, rested
-from acts.staging.gestures import GESTURES
+from acts.staging.gestures import GESTURES, arm, hanging, hangs, rested
 from acts.staging.poses import upright
 from motion import SMPL22
 
