@@ -66,6 +66,7 @@ export function mount(element, props, watch, trigger) {
     dialog.open ? dialog.close() : open();
   };
   document.addEventListener("keydown", pressed);
+  opener.disabled = false; // before, nobody would hear
   watch(["known"], load);
   load();
 }
