@@ -134,7 +134,8 @@ def unknown(doc: Doc, is_verb: Callable[[str], bool]) -> Iterator[tuple[int, int
 def _is_known(word: str) -> bool:
     """True for a noun or an adverb that the parser has not met: of a person, a plural, two words in one, "tiredly"."""
     stem, words = word.removesuffix("s"), vocabulary()
-    if is_adverb(word) or is_word(stem) or _names_something(stem) or word in words.directions or word.endswith("wards"):
+    named = word in words.directions or stem in words.metres or word.endswith("wards")
+    if named or is_adverb(word) or is_word(stem) or _names_something(stem):
         return True
     return any(_names_something(stem[:i]) and _names_something(stem[i:]) for i in range(3, len(stem) - 2))
 

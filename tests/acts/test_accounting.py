@@ -16,6 +16,7 @@ from webdemo.inference.engine import note
     [
         ("A waves at B.", ()),
         ("A and B hug.", ()),
+        ("They stand one metre apart.", ()),
         ("A walks half a circle around B.", ("half",)),
         ("They shake hands and walk away.", ()),
         ("A bows against the wall.", ("against the wall",)),
