@@ -3,11 +3,8 @@
 import json
 import math
 
-import pytest
-
-from motion import InputError
 from webdemo.benchmark import motion as bench
-from webdemo.benchmark.motion import COLUMNS, MEASURES, kinds, run_motion, table
+from webdemo.benchmark.motion import COLUMNS, MEASURES, kinds, table
 
 
 def test_every_kind_is_asked_for_in_several_ways_and_most_were_recorded() -> None:
@@ -15,11 +12,6 @@ def test_every_kind_is_asked_for_in_several_ways_and_most_were_recorded() -> Non
     assert all(len(sentences) >= 2 for sentences in listed.values())
     assert set(real) <= {*listed, "all"} and len(real) > 8
     assert all(set(MEASURES) >= set(row) - {"people"} for row in real.values())
-
-
-def test_an_unknown_kind_is_an_error() -> None:
-    with pytest.raises(InputError, match="no kind of act 'sing'"):
-        run_motion(only=["sing"])
 
 
 def test_the_table_has_a_line_for_each_kind_of_each_measure() -> None:

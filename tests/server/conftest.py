@@ -9,8 +9,8 @@ import pytest
 from fastapi.testclient import TestClient
 
 from tests.inference.conftest import weights
-from webdemo.server.accounts import users as accounts
-from webdemo.server.http import health
+from webdemo.server.accounts import accounts
+from webdemo.server.http import exchange, health
 
 from .clients import client_of, served_on_loopback, settings_for
 from .lab import add_accounts
@@ -22,9 +22,10 @@ OFTEN = 100_000
 
 @pytest.fixture(scope="package", autouse=True)
 def patient() -> Iterator[None]:
-    """A busy machine is no reason to be told how the server was: tests wait for each look."""
+    """Tests wait neither for the next look at the server's health nor for a refusal."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(health, "PATIENCE", 60.0)
+        patch.setattr(health, "EVERY", 0.1)
+        patch.setattr(exchange, "BACK_OFF", 0.0)
         yield
 
 
@@ -42,8 +43,8 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     folder = tmp_path_factory.mktemp("shared")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(accounts, "COST", 2**4)
-        add_accounts(folder / "users", "ada", "eve")
-        settings = settings_for(folder, users=folder / "users", host="0.0.0.0", hosts=["127.0.0.1"], rate=OFTEN)
+        add_accounts(folder / "data", "ada", "eve")
+        settings = settings_for(folder, accounts=True, host="0.0.0.0", hosts=["127.0.0.1"], rate=OFTEN)
         with client_of(settings) as client:
             yield client
 

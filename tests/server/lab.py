@@ -8,23 +8,28 @@ from __future__ import annotations
 
 import importlib.util
 import os
-import re
 import sys
 from pathlib import Path
 from types import ModuleType
+
+from sqlalchemy import update
 
 ROOT = Path(__file__).resolve().parents[2]
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 
 
-def add_accounts(file: Path, *names: str) -> None:
-    """Makes accounts without ids, as a file made by hand has them: what is ada's belongs to "user ada"."""
-    from webdemo.server.accounts.users import Users
+def add_accounts(data: Path, *names: str) -> None:
+    """Makes accounts without ids: what is ada's belongs to "user ada"."""
+    from webdemo.server.accounts.accounts import Accounts
+    from webdemo.server.store.database import Account, Database
 
+    database = Database(data / "history.db")
     for name in names:
-        Users(file).add(name, f"password of {name}")
-    file.write_text(re.sub(r"#[0-9a-f]{8}:", ":", file.read_text()))
+        Accounts(database).add(name, f"password of {name}")
+    with database.session.begin() as session:
+        session.execute(update(Account).values(key=Account.name))
+    database.close()
 
 
 def stub_module() -> ModuleType:

@@ -17,11 +17,10 @@ from gradio_client import Client
 from gradio_client.exceptions import AppError, AuthenticationError
 
 from webdemo.inference.run import Result
-from webdemo.server.accounts.users import Users
 from webdemo.server.serve import make_server
 from webdemo.server.settings import Settings
 
-from .lab import ROOT, stub_module
+from .lab import ROOT, add_accounts, stub_module
 
 pytestmark = pytest.mark.slow
 
@@ -29,11 +28,11 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     folder = tmp_path_factory.mktemp("lab")
-    Users(folder / "users").add("ada", "correct horse")
+    add_accounts(folder / "data", "ada")
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    settings = Settings(port=port, data=folder / "data", users=folder / "users", free_megabytes=0)
+    settings = Settings(port=port, data=folder / "data", accounts=True, free_megabytes=0)
 
     class Engine(stub_module().StubEngine):  # type: ignore[misc]  # made by a path
         def run(self, request: Any, cancel: Any = None) -> Iterator[Any]:
@@ -55,7 +54,7 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 
 def test_generate_from_a_notebook(url: str, tmp_path: Path) -> None:
-    lab = Client(url, auth=("ada", "correct horse"), verbose=False, download_files=str(tmp_path))
+    lab = Client(url, auth=("ada", "password of ada"), verbose=False, download_files=str(tmp_path))
     answer, files = lab.predict(prompt="Two people walk.", seconds=1, seed=4, steps=2, api_name="/generate")
     assert answer["manifest"]["request"]["seed"] == 4
     assert {Path(file).suffix for file in files} >= {".npz", ".bvh", ".json"}
@@ -68,7 +67,7 @@ def test_generate_from_a_notebook(url: str, tmp_path: Path) -> None:
 
 
 def test_a_sentence_is_read_without_generating(url: str) -> None:
-    lab = Client(url, auth=("ada", "correct horse"), verbose=False)
+    lab = Client(url, auth=("ada", "password of ada"), verbose=False)
     plan = lab.predict("She hugs him, then he leaves.", api_name="/read")
     assert [(act["act"], act["agents"], act["patient"]) for act in plan["acts"]][:1] == [("hug", ["a"], "b")]
     with pytest.raises(AppError) as caught:
@@ -77,7 +76,7 @@ def test_a_sentence_is_read_without_generating(url: str) -> None:
 
 
 def test_a_notebook_sees_how_far_a_run_is(url: str, tmp_path: Path) -> None:
-    lab = Client(url, auth=("ada", "correct horse"), verbose=False, download_files=str(tmp_path))
+    lab = Client(url, auth=("ada", "password of ada"), verbose=False, download_files=str(tmp_path))
     job = lab.submit(prompt="Two people walk.", seconds=1, steps=60, api_name="/generate")
     seen = []
     while not job.done():
@@ -102,7 +101,7 @@ def test_the_documents_examples_run(
     )
     names: dict[str, Any] = {}
     for block in blocks:
-        block = block.replace("https://lab.example/motion/", url).replace("PASSWORD", "correct horse")
+        block = block.replace("https://lab.example/motion/", url).replace("PASSWORD", "password of ada")
         exec(compile(block.replace("time.sleep(1)", "time.sleep(0.02)"), "hosting.md", "exec"), names)
     said = capsys.readouterr().out
     assert str(tmp_path) in said and "Denoising: step" in said

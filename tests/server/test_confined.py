@@ -19,7 +19,8 @@ import httpx
 import pytest
 
 from tests.server.lab import ROOT
-from webdemo.server.accounts.users import Users
+from webdemo.server.accounts.accounts import Accounts
+from webdemo.server.store.database import Database
 
 UNIT = (ROOT / "docs" / "deploy" / "pas-de-deux.service").read_text()
 DATA = "/var/lib/pas-de-deux"
@@ -41,7 +42,9 @@ class Confined:
         self.told.bind(f"\0pas-de-deux {port}")
         self.told.settimeout(60)
         self.log = folder / "log"
-        Users(folder / "users").add("ada", PASSWORD)
+        database = Database(folder / "history.db")
+        Accounts(database).add("ada", PASSWORD)
+        database.close()
         settings = " ".join(re.findall(r"^Environment=(.+)$", UNIT, re.MULTILINE)).replace("%S", "/var/lib")
         given = dict(each.split("=", 1) for each in settings.split())
         given |= {
@@ -60,16 +63,16 @@ class Confined:
         mounts = f"--ro-bind / / --dev /dev --tmpfs /tmp --tmpfs /run --size {SIZE} --tmpfs /var/lib --dir {DATA}"
         rights = "--unshare-user --uid 64321 --gid 64321 --cap-drop ALL --die-with-parent"
         words = ["bwrap", *mounts.split(), "--ro-bind", str(ROOT), str(ROOT), "--ro-bind", packages, packages]
-        words += ["--file", "9", f"{DATA}/users", *rights.split(), "--info-fd", str(writing), "--chdir", str(ROOT)]
+        words += ["--file", "9", f"{DATA}/history.db", *rights.split(), "--info-fd", str(writing), "--chdir", str(ROOT)]
         words += [sys.executable, "app.py"]
-        with open(folder / "users", "rb") as users, open(self.log, "w") as log:
-            words[words.index("9")] = str(users.fileno())
+        with open(folder / "history.db", "rb") as made, open(self.log, "w") as log:
+            words[words.index("9")] = str(made.fileno())
             self.process = subprocess.Popen(
                 words,
                 env={"PATH": os.environ["PATH"], **given},
                 stdout=log,
                 stderr=log,
-                pass_fds=(writing, users.fileno()),
+                pass_fds=(writing, made.fileno()),
             )
         os.close(writing)
         with os.fdopen(reading) as told:
@@ -131,7 +134,7 @@ def test_a_full_disk_is_told_and_the_page_stays_open(lab: Confined) -> None:
         big.write(b"0" * (shutil.disk_usage(lab.disk).free - 8 * 2**20))
     lab.wait_for(lambda: lab.answers("/healthz", 503))
     answer = lab.get("/healthz")
-    assert answer is not None and "disk space" in json.dumps(answer.json()["checks"])
+    assert answer is not None and "disk is full" in json.dumps(answer.json()["checks"])
     assert lab.answers("/login", 200), "what the probes of Kubernetes ask"
     (lab.disk / "big").unlink()
     lab.wait_for(lambda: lab.answers("/healthz", 200))

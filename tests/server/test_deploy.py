@@ -100,7 +100,7 @@ def test_compose_takes_every_right_away(monkeypatch: pytest.MonkeyPatch) -> None
     assert ip_address(addresses["gateway"]) in ip_network(addresses["subnet"])
     assert settings.exit_when_stuck and lab["restart"] == "unless-stopped"
     written = {mount.split(":")[1] for mount in lab["volumes"]}
-    assert str(settings.data) in written and str(settings.users).startswith(f"{settings.data}/")
+    assert str(settings.data) in written and settings.accounts
     assert int(lab["stop_grace_period"].removesuffix("s")) > settings.grace_seconds
 
 
@@ -119,7 +119,7 @@ def test_the_health_check_asks_the_server(served: tuple[str, int]) -> None:
 
 def test_the_unit_is_understood(tmp_path: Path) -> None:
     text = UNIT.read_text()
-    assert f"{PREFIX}USERS" in settings_in(text) and "User=root" not in text
+    assert settings_in(text)[f"{PREFIX}ACCOUNTS"] == "1" and "User=root" not in text
     assert "Restart=on-failure" in text and settings_in(text)[f"{PREFIX}EXIT_WHEN_STUCK"] == "1"
     assert "Type=notify" in text and int(text.split("WatchdogSec=")[1].split()[0]) > SILENT_SECONDS
     fields = set(type(read_settings()).model_fields)

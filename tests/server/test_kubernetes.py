@@ -73,7 +73,7 @@ def test_the_lab_s_settings_are_settings(whole: dict[str, Any], monkeypatch: pyt
     settings = read_settings()
     settings.check()
     assert {n.removeprefix(PREFIX).lower() for n in given if n.startswith(PREFIX)} <= set(type(settings).model_fields)
-    assert settings.exit_when_stuck and str(settings.users).startswith(f"{settings.data}/")
+    assert settings.exit_when_stuck and settings.accounts
     assert settings.hosts == documents("ingress.yaml")[0]["spec"]["tls"][0]["hosts"]
     assert lab["ports"][0]["containerPort"] == settings.port
     grace = whole["spec"]["template"]["spec"]["terminationGracePeriodSeconds"]

@@ -39,9 +39,9 @@ class StubRuns:
 
 def stub_context(engine: EngineLike, files: Path | None = None) -> PageContext:
     """The parts of a page around an engine, whose files go to a folder, and which keeps nothing."""
-    history, studies, sharing = Mock(), Mock(), Mock()
+    history, studies = Mock(), Mock()
     history.search.return_value = Found((), 0)
-    studies.mine.return_value = sharing.pages.return_value = ()
+    studies.mine.return_value = history.pages.return_value = ()
     return PageContext(
         engine=engine,
         runs=StubRuns(engine),
@@ -49,5 +49,4 @@ def stub_context(engine: EngineLike, files: Path | None = None) -> PageContext:
         shelf=Shelf(files or Path(tempfile.mkdtemp())),
         history=history,
         studies=studies,
-        sharing=sharing,
     )

@@ -10,15 +10,18 @@ from __future__ import annotations
 import json
 import math
 import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from motion import Duet, InputError
+from motion import Duet
 from motion.metrics.quality import Naturalness, naturalness
+from webdemo.inference.engine import Engine
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.run import Result
 
 HERE = Path(__file__).parent
 RECORDED = HERE / "recorded.json"
@@ -52,31 +55,22 @@ def kinds() -> dict[str, tuple[Asked, ...]]:
     return {kind["name"]: tuple(Asked(**each) for each in kind["sentences"]) for kind in listed}
 
 
-def run_motion(*, steps: int = 8, seeds: int = 2, only: Sequence[str] = ()) -> dict[str, Any]:
+def run_motion(*, steps: int = 8, seeds: int = 2) -> dict[str, Any]:
     """Prints the table and gives its figures: ``{kind: {measure: {column: value}}}`` and the kind ``all``.
 
     Args:
         steps: DDIM steps.
         seeds: motions of each sentence.
-        only: these kinds alone.
-
-    Raises:
-        InputError: for an unknown kind.
     """
-    listed = kinds()
-    if unknown := [kind for kind in only if kind not in listed]:
-        raise InputError(f"There is no kind of act {unknown[0]!r}: choose from {', '.join(listed)}.")
     real = json.loads(RECORDED.read_text(encoding="utf-8"))
     people: dict[str, tuple[list[Naturalness], list[Naturalness]]] = {}
-    make = _maker(steps)
-    for kind, sentences in listed.items():
-        if only and kind not in only:
-            continue
+    engine = Engine()
+    for kind, sentences in kinds().items():
         people[kind] = ([], [])
         for asked in sentences:
             for seed in range(seeds):
                 for found, planned in zip(people[kind], (True, False), strict=True):
-                    found += _measured(make(asked, seed, planned), asked.people)
+                    found += _measured(_made(engine, asked, steps, seed, planned), asked.people)
     figures = {kind: _figures(found, real.get(kind, {})) for kind, found in people.items()}
     everyone = [[each for pair in people.values() for each in pair[column]] for column in (0, 1)]
     figures["all"] = _figures(everyone, real.get("all", {}))
@@ -84,24 +78,11 @@ def run_motion(*, steps: int = 8, seeds: int = 2, only: Sequence[str] = ()) -> d
     return figures
 
 
-def _maker(steps: int) -> Callable[[Asked, int, bool], Duet]:
-    from webdemo.inference.engine import Engine
-    from webdemo.inference.requests import GenerateRequest
-    from webdemo.inference.run import Result
-
-    engine = Engine()
-
-    def make(asked: Asked, seed: int, planned: bool) -> Duet:
-        request = GenerateRequest(
-            prompt=asked.words, seconds=asked.seconds, steps=steps, seed=seed, split=planned, planned=planned
-        )
-        *_, result = engine.run(request)
-        assert isinstance(result, Result)  # the last event of a run
-        duet = result.duets[0]
-        assert isinstance(duet, Duet)  # both people are made
-        return duet
-
-    return make
+def _made(engine: Engine, asked: Asked, steps: int, seed: int, planned: bool) -> Duet:
+    fields: dict[str, Any] = {"steps": steps, "seed": seed, "split": planned, "planned": planned}
+    *_, result = engine.run(GenerateRequest(prompt=asked.words, seconds=asked.seconds, **fields))
+    assert isinstance(result, Result) and isinstance(result.duets[0], Duet)  # the last event of a run
+    return result.duets[0]
 
 
 def _measured(duet: Duet, people: str = "ab") -> list[Naturalness]:

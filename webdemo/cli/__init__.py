@@ -1,7 +1,7 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
-The commands are generate, react, predict, scene, read, render, score, info, benchmark, serve, user, admin,
-backup and restore.
+The commands are generate, react, predict, scene, read, render, score, info, benchmark, serve, user, admin
+and backup.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
 with 141. No file is left half-written.
@@ -25,7 +25,7 @@ from .parser import Parser
 from .rendering import add_render
 from .scenes import add_read, add_scene
 from .scoring import add_score
-from .service import add_admin, add_service, add_upkeep
+from .service import add_admin, add_backup, add_service
 
 __all__ = ["main"]
 
@@ -44,7 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_score,
         add_service,
         add_admin,
-        add_upkeep,
+        add_backup,
     ):
         add(commands)
     began = time.perf_counter()

@@ -1,4 +1,4 @@
-"""The commands about the machine and the lab: info, benchmark, serve, user, admin, backup and restore."""
+"""The commands about the machine and the lab: info, benchmark, serve, user, admin and backup."""
 
 from __future__ import annotations
 
@@ -31,7 +31,6 @@ def add_service(commands: Any) -> None:
         action="store_true",
         help="instead: planned motion beside the network's own and recorded motion, by kind of act",
     )
-    bench.add_argument("--kinds", nargs="+", default=[], metavar="KIND", help="with --motion: only these kinds")
     bench.add_argument("--people", type=int, default=20, help="with --load")
     bench.add_argument("--minutes", type=float, default=2.0, help="with --load")
     bench.set_defaults(job=benchmark)
@@ -43,7 +42,6 @@ def add_service(commands: Any) -> None:
     user_parser = commands.add_parser("user", help="add an account, or change its password")
     user_parser.add_argument("action", choices=("add",))
     user_parser.add_argument("name", help="name of the account")
-    user_parser.add_argument("--users", type=Path, help="file of accounts; PASDEDEUX_USERS by default")
     user_parser.set_defaults(job=user)
 
 
@@ -82,7 +80,7 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
     if options.motion:
         from webdemo.benchmark.motion import run_motion
 
-        return run_motion(steps=options.steps or 8, only=options.kinds)  # it prints a table
+        return run_motion(steps=options.steps or 8)  # it prints a table
     if options.load:
         from webdemo.benchmark.load import run_load
 
@@ -121,17 +119,16 @@ def user(options: argparse.Namespace) -> dict[str, Any]:
     """Adds an account or changes its password, which is asked for, or read from a pipe."""
     import getpass
 
-    from webdemo.server.accounts.users import Users
+    from webdemo.server.accounts.accounts import Accounts
     from webdemo.server.settings import read_settings
+    from webdemo.server.store.database import Database, sentences
 
-    path = options.users or read_settings().users
-    if path is None:
-        raise InputError("Name the file of accounts: give --users FILE, or set PASDEDEUX_USERS.")
     terminal = sys.stdin.isatty()
     password = getpass.getpass("Password: ") if terminal else sys.stdin.readline().rstrip("\n")
     if terminal and getpass.getpass("Once more: ") != password:
         raise InputError("The two passwords differ: try again.")
-    done = "added" if Users(path).add(options.name, password) else "changed"
+    with closing(Database(read_settings().database)) as database, sentences():
+        done = "added" if Accounts(database).add(options.name, password) else "changed"
     return {done: options.name}
 
 
@@ -152,17 +149,14 @@ def add_admin(commands: Any) -> None:
 def admin(options: argparse.Namespace) -> dict[str, Any]:
     """Does one act in the lab that the settings name; a running server heeds it at once."""
     from webdemo.server.accounts.administration import Administration
-    from webdemo.server.accounts.users import Users
-    from webdemo.server.settings import read_settings
+    from webdemo.server.settings import settings_of_history
     from webdemo.server.store.database import Database, sentences
 
-    settings, name, action = read_settings(), options.name or "", options.action
-    if not settings.accounts:
-        raise InputError("There are no accounts: set PASDEDEUX_USERS to their file.")
+    settings, name, action = settings_of_history(), options.name or "", options.action
     if action != "list" and not name:
         raise InputError(f"Name the account: `admin {action} NAME`.")
     with closing(Database(settings.database)) as database, sentences():
-        acts = Administration(database, Users(settings.users) if settings.users else None, settings)
+        acts = Administration(database, settings.data)
         if action == "list":
             return {"people": [asdict(row) for row in acts.rows()]}
         if action in ("make-admin", "end-admin"):
@@ -174,15 +168,12 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
     return {"done": action, "name": name}
 
 
-def add_upkeep(commands: Any) -> None:
-    """Adds ``backup`` and ``restore`` to the shell's commands."""
+def add_backup(commands: Any) -> None:
+    """Adds ``backup`` to the shell's commands."""
     backup_parser = commands.add_parser("backup", help="copy the lab's database and motions, while people work")
     backup_parser.add_argument("folder", type=Path, help="holds all backups; each has a folder of its own in it")
     backup_parser.add_argument("--keep", type=int, default=0, metavar="N", help="remove all but the newest N")
     backup_parser.set_defaults(job=backup)
-    restore_parser = commands.add_parser("restore", help="put a backup into an empty data folder")
-    restore_parser.add_argument("backup", type=Path, help="a backup, or a folder of backups, whose newest is taken")
-    restore_parser.set_defaults(job=restore)
 
 
 def backup(options: argparse.Namespace) -> dict[str, Any]:
@@ -196,19 +187,3 @@ def backup(options: argparse.Namespace) -> dict[str, Any]:
     made = back_up(settings, options.folder, keep=options.keep)
     print(f"The backup is in {made}.")
     return {"backup": str(made)}
-
-
-def restore(options: argparse.Namespace) -> dict[str, Any]:
-    """Restores a backup into the empty data folder that the settings name."""
-    from webdemo.server.settings import read_settings
-    from webdemo.server.store.backup import DATABASE, backups, restore
-
-    chosen = options.backup
-    if not (chosen / DATABASE).is_file():
-        if not (all_of_them := backups(chosen)):
-            raise InputError(f"There is no backup in {chosen}: name a folder that `backup` made.")
-        chosen = all_of_them[-1]
-    settings = read_settings()
-    restore(chosen, settings)
-    print(f"{chosen} was restored to {settings.data}.")
-    return {"backup": str(chosen)}

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import gradio as gr
+import gradio.route_utils
 import gradio.utils
 from fastapi import FastAPI, Request
 from gradio.routes import App
@@ -23,15 +24,15 @@ from starlette.routing import Mount
 
 from acts import read
 from motion import InputError
+from webdemo.server.accounts.administration import Administration
 from webdemo.server.accounts.login import login_routes
-from webdemo.server.accounts.visitors import Visitors
 from webdemo.server.http.admin_pages import admin_routes
 from webdemo.server.http.guard import Guard, may_read_figures
 from webdemo.server.http.page_html import PageCache, keep_states_lean, kept_in_cache
 from webdemo.server.http.payloads import Payloads
 from webdemo.server.http.public_pages import public_routes
 from webdemo.server.http.study_pages import study_routes
-from webdemo.server.lab import Lab, engine_of, make_lab
+from webdemo.server.lab import Lab, engine_of
 from webdemo.server.live.streams import live_routes
 from webdemo.server.queue.events import FairEvents
 from webdemo.server.queue.recorder import Recorder
@@ -39,7 +40,6 @@ from webdemo.server.store.scratch import Scratch, keep_files_apart, move_files_i
 from webdemo.ui.components.exports import Shelf
 from webdemo.ui.context import PageContext
 from webdemo.ui.page import build_page, launch_options, start_queue
-from webdemo.ui.places import READING
 from webdemo.ui.runs import EngineLike
 from webdemo.ui.visitor import visitor
 
@@ -58,6 +58,8 @@ GIVE_BACK_EVERY = 5.0
 """Seconds between two returns of unused memory to the system."""
 PAGES = 256
 """Most sessions whose state is kept; Gradio's default of 10,000 would take gigabytes."""
+MOST_FILES = 16
+"""Files in one upload."""
 WARM_UP_AFTER = 0.5
 """Seconds between the start and the loading of the networks, to answer a waiting browser first."""
 
@@ -76,7 +78,7 @@ def create_app(settings: Settings, *, engine: EngineLike | None = None, scratch:
     settings.check()
     if engine is None:
         engine = engine_of(settings)
-    lab = make_lab(settings, engine, scratch)
+    lab = Lab(settings, engine, scratch)
     shelf = Shelf(
         Path(get_upload_folder()), owner=visitors_folder, admit=lambda size: lab.storage.admit(visitor(), size)
     )
@@ -88,33 +90,22 @@ def create_app(settings: Settings, *, engine: EngineLike | None = None, scratch:
             shelf=shelf,
             history=lab.history,
             studies=lab.studies,
-            sharing=lab.publishing,
         )
     )
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
     app.state.lab = lab
     app.state.tidy = lambda: lab.storage.tidy(kept_in_cache(page))
-    visitors = Visitors(settings, lab.sign_ins, lab.people)
     _add_routes(app, lab)
     app.include_router(live_routes(lab.streams))
     app.include_router(study_routes(settings, lab.studies))
-    app.include_router(public_routes(settings, lab.publishing))
-    if lab.sign_ins is not None:
-        app.include_router(login_routes(settings, lab.sign_ins))
-    if lab.administration is not None:
-        app.include_router(admin_routes(settings.root_path, lab.administration))
+    app.include_router(public_routes(settings, lab.history))
+    if settings.accounts:
+        app.include_router(login_routes(settings, lab.accounts))
+    if settings.sign_in:
+        app.include_router(admin_routes(settings.root_path, Administration(lab.database, settings.data), lab.accounts))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some
     app.add_middleware(PageCache)
-    app.add_middleware(
-        Guard,
-        settings=settings,
-        visitors=visitors,
-        quotas=lab.quotas,
-        figures=lab.figures,
-        answers=lab.answers,
-        payloads=Payloads(page),
-        admit=lab.storage.admit,
-    )
+    app.add_middleware(Guard, lab=lab, payloads=Payloads(page))
     _mount(app, page, lab)
     return app
 
@@ -123,9 +114,8 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     """Mounts the page in the application and closes what Gradio leaves open when mounted."""
     settings = lab.settings
     page.state_session_capacity = PAGES
-    page.max_threads = lab.quotas.events.everybody  # each that waits for a run or a file holds a thread
-    READING.at_once = lab.quotas.reading.everybody
-    start_queue(page, partial(FairEvents, quota=lab.quotas.events, figures=lab.figures))
+    page.max_threads = int(lab.quotas.events.everybody)  # each that waits for a run or a file holds a thread
+    start_queue(page, partial(FairEvents, quota=lab.quotas.events, figures=lab.figures, bindings=lab.bindings))
     options = launch_options() | {
         "allowed_paths": [],
         "server_name": settings.host,
@@ -138,6 +128,10 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     keep_states_lean(mounted, page)
     keep_files_apart(mounted)
     move_files_in_threads()
+    parser: Any = gradio.route_utils.GradioMultiPartParser
+    gradio.route_utils.GradioMultiPartParser = lambda *given, **options: parser(  # type: ignore[misc,assignment]
+        *given, **options | {"max_files": MOST_FILES}
+    )
     # Its import of pyplot would hold up the event loop at the first event; nothing here draws by that.
     gradio.utils.MatplotlibBackendMananger = contextlib.nullcontext  # type: ignore[assignment,misc]
 
@@ -145,7 +139,7 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
 def _add_routes(app: FastAPI, lab: Lab) -> None:
     @app.get("/healthz")
     async def healthz() -> Response:
-        whole, report = await lab.health.look()
+        whole, report = lab.health.report()
         return JSONResponse(report, status_code=200 if whole else 503, headers={"Cache-Control": "no-store"})
 
     @app.get("/metrics")
@@ -165,10 +159,9 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     if lost:
         log.warning("%d runs were interrupted when the server last stopped.", lost)
     tasks = [
-        asyncio.create_task(_later(WARM_UP_AFTER, lab.health.probe)),
+        asyncio.create_task(_later(WARM_UP_AFTER, lab.health.keep_looking)),
         asyncio.create_task(_later(2 * WARM_UP_AFTER, _read_first)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
-        asyncio.create_task(_every(CLEAN_EVERY, lab.publishing.clean)),
         asyncio.create_task(_every(TIDY_EVERY, app.state.tidy)),
         asyncio.create_task(_every(GIVE_BACK_EVERY, lambda: give_back(resting=not lab.busy))),
         asyncio.create_task(_every(SWEEP_EVERY, lab.streams.sweep)),

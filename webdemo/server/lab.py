@@ -4,24 +4,18 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
+from motion import InputError
 from webdemo.inference.engine import Engine
-from webdemo.server.accounts.administration import Administration
-from webdemo.server.accounts.people import People
+from webdemo.server.accounts.accounts import Accounts
 from webdemo.server.accounts.quotas import Quotas
-from webdemo.server.accounts.users import SignIns, Users
-from webdemo.server.http.guard import OpenAnswers
-from webdemo.server.http.health import Figures, Health, check_disk
+from webdemo.server.accounts.visitors import Bindings
+from webdemo.server.http.health import Figures, Health
 from webdemo.server.live.streams import Streams
 from webdemo.server.queue.queue import FairQueue
-from webdemo.server.queue.turns import QueueLimits
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
-from webdemo.server.store.publishing import Publishing
 from webdemo.server.store.scratch import Scratch
 from webdemo.server.store.storage import Storage
 from webdemo.server.store.studies import Studies
@@ -35,25 +29,61 @@ ANSWER_SECONDS = 5.0
 """Least seconds allowed for sending results of finished runs, even with a shorter grace period."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Lab:
-    """The parts of a running server; ``app.state.lab``."""
+    """The parts of a running server; ``app.state.lab``.
 
-    settings: Settings
-    database: Database
-    history: Notebook
-    studies: Studies
-    publishing: Publishing
-    storage: Storage
-    queue: FairQueue
-    quotas: Quotas
-    health: Health
-    figures: Figures
-    answers: OpenAnswers
-    streams: Streams
-    people: People
-    administration: Administration | None = None
-    sign_ins: SignIns | None = None
+    Args:
+        settings: all of them.
+        engine: what generates.
+        scratch: uploads and files for download; without it they are not counted.
+
+    Attributes:
+        sending: results of runs that are being sent; changed by the server's main thread alone.
+
+    Raises:
+        InputError: if the database or the data folder cannot be used, or people are to sign in and nobody can.
+    """
+
+    def __init__(self, settings: Settings, engine: EngineLike, scratch: Scratch | None = None) -> None:
+        self.settings, self.sending = settings, 0
+        self.database = database = Database(settings.database)
+        self.accounts = Accounts(database, settings.session_hours)
+        if settings.accounts and not settings.proxy_user and self.accounts.empty:
+            raise InputError("There are no accounts yet: make one with `python -m webdemo user add NAME`.")
+        self.quotas, self.bindings = (quotas := Quotas(settings)), Bindings()
+        self.storage = Storage(
+            database, settings.motions, quotas.room, scratch=scratch, free_bytes=settings.free_megabytes * 2**20
+        )
+        self.history = Notebook(
+            database,
+            settings.motions,
+            storage=self.storage,
+            keep_days=settings.keep_days,
+            publish_days=settings.publish_days,
+        )
+        self.studies = Studies(database, settings.data / "studies", storage=self.storage)
+        partners: Any = engine if hasattr(engine, "partner") else Engine()  # beside Ray, they run here
+        self.streams = Streams(partners, quotas.live)
+        self.health = Health(
+            engine,
+            {"database": database.check, "disk": self.storage.check_disk},
+            works={"queue": lambda: self.queue.stuck, "live stream": lambda: self.streams.stuck},
+            stuck_seconds=settings.stuck_seconds,
+        )
+        self.figures = Figures()
+        self.queue = FairQueue(
+            engine,
+            quotas.waiting,
+            running=settings.running,
+            workers=getattr(engine, "parallel", 1),
+            seconds=settings.run_seconds,
+            figures=self.figures,
+            broken=self.health.broken,
+        )
+        self.figures.watch("queue_waiting", "Runs that wait", lambda: self.queue.waiting)
+        self.figures.watch("queue_running", "Runs that run", lambda: self.queue.running)
+        self.figures.watch("live_streams", "Live streams", lambda: self.streams.count)
+        self.figures.watch("ready", "1 where a tiny generation works", lambda: self.health.ready)
 
     @property
     def busy(self) -> bool:
@@ -67,71 +97,10 @@ class Lab:
         self.streams.stop()
         left = self.queue.close(self.settings.grace_seconds)
         until = max(until, time.monotonic() + ANSWER_SECONDS)
-        while self.answers.count and time.monotonic() < until:  # results are still written and sent
+        while self.sending and time.monotonic() < until:  # results are still written and sent
             time.sleep(0.05)
         if left:
             log.warning("%d runs were stopped before their end.", left)
-
-
-def make_lab(settings: Settings, engine: EngineLike, scratch: Scratch | None = None) -> Lab:
-    """Puts the parts together.
-
-    Args:
-        settings: all of them.
-        engine: what generates.
-        scratch: uploads and files for download; without it they are not counted.
-
-    Raises:
-        InputError: if the accounts, the database or the data folder cannot be used.
-    """
-    users = Users(settings.users) if settings.users is not None else None
-    database = Database(settings.database)
-    figures, quotas = Figures(), Quotas.of(settings)
-    wants: dict[str, Callable[[], Any]] = {
-        "database": database.check,
-        "disk": partial(check_disk, settings.data, settings.free_megabytes * 2**20),
-    }
-    if users is not None:
-        _ = users.names  # reports an unreadable file at start
-        wants["accounts"] = lambda: users.names
-    works: dict[str, Callable[[], float]] = {"queue": lambda: queue.stuck, "live stream": lambda: streams.stuck}
-    health = Health(engine, wants, works=works, stuck_seconds=settings.stuck_seconds)
-    limits = QueueLimits(running=settings.running, workers=getattr(engine, "parallel", 1), seconds=settings.run_seconds)
-    queue = FairQueue(engine, limits, quotas.waiting, figures=figures, broken=health.broken)
-    partners: Any = engine if hasattr(engine, "partner") else Engine()  # with an engine elsewhere, they run here
-    streams = Streams(partners, quotas.live)
-    figures.watch(
-        waiting=lambda: queue.waiting,
-        running=lambda: queue.running,
-        ready=lambda: health.ready,
-        live=lambda: streams.count,
-    )
-    storage = Storage(database, settings.motions, quotas.rooms, scratch=scratch)
-    history = Notebook(
-        database,
-        settings.motions,
-        storage=storage,
-        keep_days=settings.keep_days,
-        link_days=settings.link_days,
-        free_bytes=settings.free_megabytes * 2**20,
-    )
-    return Lab(
-        settings=settings,
-        database=database,
-        history=history,
-        queue=queue,
-        quotas=quotas,
-        publishing=Publishing(history, days=settings.publish_days),
-        studies=Studies(database, settings.data / "studies", storage=storage),
-        storage=storage,
-        health=health,
-        figures=figures,
-        answers=OpenAnswers(),
-        streams=streams,
-        people=People(database),
-        administration=Administration(database, users, settings) if settings.accounts else None,
-        sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
-    )
 
 
 def engine_of(settings: Settings) -> EngineLike:

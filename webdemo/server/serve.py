@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import fcntl
 import logging
 import resource
 import socket
 import sys
-from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import uvicorn
 from starlette.concurrency import run_in_threadpool
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from motion import InputError
-from webdemo.server.accounts.visitors import PeerNoted
 from webdemo.server.http.connections import bounded_protocol
+from webdemo.server.store.folders import hold, make_folder
 from webdemo.server.store.scratch import Scratch
 
 from .app import Lab, create_app
@@ -30,6 +28,7 @@ SWITCH_SECONDS = 0.001
 """After which a thread that computes lets another go on, a fifth of Python's own: the page answers sooner."""
 FILES = 512
 """Open files beside the connections: the database, motions, libraries."""
+OTHER = "Another process serves the lab in {}: stop it, or choose another folder with PASDEDEUX_DATA."
 CLOSING_SECONDS = 3
 """Seconds allowed for open connections once all runs have ended."""
 
@@ -60,7 +59,7 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
 
     With ``scratch`` all files of this process, Gradio's as well, lie in the data folder.
     """
-    alone = hold(settings.data)
+    alone = hold(make_folder(settings.data) / "serving.lock", OTHER.format(settings.data))
     if scratch:
         parts["scratch"] = Scratch(settings.data / "scratch", settings.scratch_megabytes * 2**20)
         parts["scratch"].take_uploads()
@@ -68,7 +67,7 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
     app.state.alone = alone  # the lock is released with it
     forwarded: Any = ProxyHeadersMiddleware
     config = uvicorn.Config(
-        PeerNoted(forwarded(app, trusted_hosts=settings.proxies)),
+        forwarded(app, trusted_hosts=settings.proxies),
         host=settings.host,
         port=settings.port,
         http=bounded_protocol(settings, app.state.lab.quotas.connections),
@@ -83,29 +82,6 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
         backlog=512,
     )
     return Server(config, app.state.lab)
-
-
-def hold(folder: Path) -> IO[bytes]:
-    """The lock of a data folder, which the system releases however the process ends.
-
-    Raises:
-        InputError: if another process has it, or the folder cannot be written.
-    """
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        file = open(folder / "serving.lock", "ab")  # noqa: SIM115  # held as long as the lock is
-    except OSError as error:
-        raise InputError(
-            f"The folder {folder} cannot be written ({error.strerror}): choose another with PASDEDEUX_DATA."
-        ) from None
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        file.close()
-        raise InputError(
-            f"Another process serves the lab in {folder}: stop it, or choose another folder with PASDEDEUX_DATA."
-        ) from None
-    return file
 
 
 def serve(settings: Settings) -> None:

@@ -77,7 +77,7 @@ class Settings(BaseSettings):
     )
 
     # ---- who may use it
-    users: Path | None = Field(None, description="file of accounts; without one there are no accounts")
+    accounts: bool = Field(False, description="people sign in; `python -m webdemo user add NAME` makes accounts")
     proxy_user: str = Field(
         "",
         pattern=r"^[A-Za-z0-9-]*$",
@@ -101,7 +101,6 @@ class Settings(BaseSettings):
         description="room of one person for runs, studies, uploads and downloads together; by default an eighth of "
         "keep_megabytes and scratch_megabytes, or all of it where there is one history",
     )
-    link_days: float = Field(30, gt=0, le=3650, description="days for which a link opens a run for others")
     publish_days: float = Field(
         30, ge=0, le=3650, description="days for which a public page lasts at most; 0: no public pages"
     )
@@ -185,16 +184,16 @@ class Settings(BaseSettings):
         return is_loopback(self.host)
 
     @property
-    def accounts(self) -> bool:
-        """True if people sign in."""
-        return self.users is not None or bool(self.proxy_user)
+    def sign_in(self) -> bool:
+        """True if people sign in, here or at a proxy."""
+        return self.accounts or bool(self.proxy_user)
 
     @property
     def person_bytes(self) -> float:
         """Bytes that one person may store."""
         if self.person_megabytes is not None:
             return self.person_megabytes * 2**20
-        people = PEOPLE if self.accounts or self.open else 1
+        people = PEOPLE if self.sign_in or self.open else 1
         return (self.keep_megabytes + self.scratch_megabytes) * 2**20 / people
 
     @property
@@ -220,10 +219,10 @@ class Settings(BaseSettings):
                 f"With {PREFIX}PROXY_USER, {PREFIX}PROXIES cannot be *, or anybody could claim to be anybody: name the "
                 "addresses of the proxies."
             )
-        if not self.local and not self.accounts and not self.open:
+        if not self.local and not self.sign_in and not self.open:
             raise InputError(
                 f"{self.host} can be reached from other machines and there are no accounts: make some with "
-                f"`python -m webdemo user add NAME` and set {PREFIX}USERS, or let anyone in, {PREFIX}OPEN=1."
+                f"`python -m webdemo user add NAME` and set {PREFIX}ACCOUNTS=1, or let anyone in, {PREFIX}OPEN=1."
             )
 
     def shown(self) -> dict[str, Any]:

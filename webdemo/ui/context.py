@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from webdemo.study import StudiesLike
 from webdemo.ui.components.exports import Shelf
 
-from .history import HistoryLike, SharingLike
+from .history import HistoryLike
 from .runs import EngineLike, HealthLike, RunsLike
 
 
@@ -22,7 +22,6 @@ class PageContext:
         shelf: where files for downloads are put.
         history: runs that can be found again.
         studies: blind studies of those runs.
-        sharing: public pages of those runs.
     """
 
     engine: EngineLike
@@ -31,4 +30,3 @@ class PageContext:
     shelf: Shelf
     history: HistoryLike
     studies: StudiesLike
-    sharing: SharingLike

@@ -1,4 +1,4 @@
-"""The interfaces of a history and of public pages of its runs as the page uses them; the server keeps both."""
+"""The interface of a history as the page uses it; the server keeps it."""
 
 from __future__ import annotations
 
@@ -146,6 +146,23 @@ class Opened:
     beside: tuple[Opened, ...] = field(default=(), repr=False)
 
 
+@dataclass(frozen=True, kw_only=True)
+class PublicPage:
+    """A page that shows a result to anybody who knows its address.
+
+    Attributes:
+        key: of its address.
+        title: of its result.
+        created: seconds since 1970.
+        until: when it ends, in seconds since 1970.
+    """
+
+    key: str
+    title: str
+    created: float
+    until: float
+
+
 class HistoryLike(Protocol):
     """Runs that can be found again. Every method raises InputError with a sentence where it cannot."""
 
@@ -183,10 +200,19 @@ class HistoryLike(Protocol):
         """Brings removed runs back; returns how many."""
 
     def link(self, run: str, owner: str) -> tuple[str, float]:
-        """A new link to a run: its key, and when it ends (seconds since 1970)."""
+        """The link to a run: its key, and when it ends (seconds since 1970)."""
 
     def revoke(self, run: str, owner: str) -> int:
-        """Ends all links to a run; returns how many there were."""
+        """Ends the link to a run; returns how many there were."""
+
+    def publish(self, run: str, owner: str) -> PublicPage:
+        """The public page of a run."""
+
+    def pages(self, owner: str) -> Sequence[PublicPage]:
+        """The owner's public pages that have not ended, newest first."""
+
+    def end_page(self, key: str, owner: str) -> None:
+        """Ends a public page of the owner's."""
 
     def usage(self, who: Visitor) -> Usage:
         """The room that a person uses, and how much they may."""
@@ -199,36 +225,3 @@ class HistoryLike(Protocol):
 
     def take_in(self, owner: str, files: Sequence[Path], *, address: str = "") -> int:
         """Adds results to the owner's runs, each from its .npz; returns how many."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class PublicPage:
-    """A page that shows a result to anybody who knows its address.
-
-    Attributes:
-        key: of its address.
-        title: of its result.
-        created: seconds since 1970.
-        until: when it ends, in seconds since 1970.
-    """
-
-    key: str
-    title: str
-    created: float
-    until: float
-
-
-class SharingLike(Protocol):
-    """Public pages. Every method raises InputError with a sentence where it cannot."""
-
-    days: float
-    """For how many days a page lasts."""
-
-    def publish(self, owner: str, run: str) -> PublicPage:
-        """Makes a page of one of the owner's runs."""
-
-    def pages(self, owner: str) -> Sequence[PublicPage]:
-        """The owner's pages that have not ended, newest first."""
-
-    def revoke(self, key: str, owner: str) -> None:
-        """Ends a page of the owner's."""

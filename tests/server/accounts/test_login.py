@@ -24,8 +24,8 @@ from tests.server.clients import (
     served_on_loopback,
     sign_in,
 )
-from webdemo.server.accounts.users import Users
-from webdemo.server.store.database import Link, SignIn
+from tests.server.lab import add_accounts
+from webdemo.server.store.database import Share, SignIn
 from webdemo.ui.history import Entry, Search
 
 
@@ -126,15 +126,15 @@ def test_a_browser_is_remembered_that_somebody_signed_in_with(shared: TestClient
     signed_in = shared.post("/login", data=given)
     known = signed_in.cookies["pasdedeux_known"]
     shared.cookies.clear()
-    sign_ins = lab_of(shared).sign_ins
-    assert sign_ins is not None and sign_ins._browser("ada", known)
+    accounts = lab_of(shared).accounts
+    assert accounts._browser("ada", known)
     attributes = next(c for c in signed_in.headers.get_list("set-cookie") if c.startswith("pasdedeux_known="))
     assert "HttpOnly" in attributes
     for _ in range(60):
-        sign_ins._throttle._names.take("ada")
+        accounts._throttle._names.take("ada")
     assert shared.post("/login", data=given).status_code == 429
     assert shared.post("/login", data=given, headers={"cookie": f"pasdedeux_known={known}"}).json() == {"success": True}
-    sign_ins._throttle._names.take("ada", -60)
+    accounts._throttle._names.take("ada", -60)
     shared.cookies.clear()
 
 
@@ -180,7 +180,7 @@ def test_an_address_opens_no_run_of_another(shared: TestClient) -> None:
     history.revoke(entry.id, "user ada")
     late, _ = history.link(entry.id, "user ada")
     with history.database.session.begin() as session:
-        session.execute(update(Link).where(Link.token == late).values(until=time.time() - 1))
+        session.execute(update(Share).where(Share.key == late).values(until=time.time() - 1))
     keys = [entry.id, "n" * len(entry.id), key, late, "../" + entry.id, entry.id + "' OR '1'='1"]
     answers = {page_at(shared, each, eve) for each in keys}
     assert len(answers) == 1
@@ -193,9 +193,8 @@ def test_an_address_opens_no_run_of_another(shared: TestClient) -> None:
 
 def test_behind_a_proxy_that_speaks_tls(tmp_path: Path) -> None:
     """Cookies are then for TLS alone, and a link has the page's own address."""
-    users = Users(tmp_path / "users")
-    users.add("ada", "password of ada")
-    given = {"users": users.path, "hosts": ["lab.example", "127.0.0.1"], "proxies": ["127.0.0.2"]}
+    add_accounts(tmp_path / "data", "ada")
+    given = {"accounts": True, "hosts": ["lab.example", "127.0.0.1"], "proxies": ["127.0.0.2"]}
     with served_on_loopback(tmp_path, root_path="/motion", **given) as (host, port):
         for address, secure in (("127.0.0.2", True), ("127.0.0.3", False)):
             transport = httpx.HTTPTransport(local_address=address)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import socket
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
 
 from motion import InputError
 from tests.server.attacks.target import Target
-from webdemo.server.accounts.people import ADMIN, People
+from webdemo.server.accounts.administration import Administration
 from webdemo.server.accounts.visitors import PEER, person_by_proxy, trusted_hosts
 from webdemo.server.http.routes import Refused
 from webdemo.server.settings import Settings
@@ -85,8 +86,9 @@ def test_administrators_see_and_suspend_whoever_came(lab: Target) -> None:
     assert asked(lab, X_Remote_User="mary").status_code == 200
     assert asked(lab, "/admin", X_Remote_User="mary").status_code == 403
     lead = {"X-Remote-User": "lead", "origin": lab.url}
-    People(Database(lab.data / "history.db")).set("lead", role=ADMIN)
     with httpx.Client(base_url=lab.url, headers=lead, timeout=30) as client:
+        assert client.get("/admin").status_code == 403
+        Administration(Database(lab.data / "history.db"), lab.data).set_role("lead", admin=True)
         assert "<strong>mary</strong>" in client.get("/admin").text
         assert client.post("/admin", data={"act": "suspend", "name": "mary"}).status_code == 303
         refused = asked(lab, X_Remote_User="mary")
@@ -102,11 +104,11 @@ def test_addresses_and_networks_are_read() -> None:
 
 def test_without_a_noted_peer_no_header_counts(tmp_path: Path) -> None:
     settings = Settings(data=tmp_path, proxy_user=NAME)
-    scope = {"type": "http", "headers": [(b"x-remote-user", b"ada")], "client": ("127.0.0.1", 1)}
+    scope: dict[str, Any] = {"type": "http", "headers": [(b"x-remote-user", b"ada")], "client": ("127.0.0.1", 1)}
     with pytest.raises(Refused, match="through its proxy"):
         person_by_proxy(settings, scope)
-    assert person_by_proxy(settings, scope | {PEER: "127.0.0.1"}) == "ada"
-    assert person_by_proxy(Settings(data=tmp_path), scope | {PEER: "127.0.0.1"}) == ""
+    assert person_by_proxy(settings, scope | {"state": {PEER: "127.0.0.1"}}) == "ada"
+    assert person_by_proxy(Settings(data=tmp_path), scope | {"state": {PEER: "127.0.0.1"}}) == ""
 
 
 def test_settings_that_would_let_anybody_be_anybody_are_refused(tmp_path: Path) -> None:

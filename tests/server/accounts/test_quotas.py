@@ -29,11 +29,11 @@ def test_each_share_is_counted(person: str, address: str, whose: str) -> None:
 
 
 def test_quotas_are_those_of_the_settings(tmp_path: Path) -> None:
-    found = Quotas.of(settings_for(tmp_path, open=True, events=10, waiting=3, address_people=2, live=6))
+    found = Quotas(settings_for(tmp_path, open=True, events=10, waiting=3, address_people=2, live=6))
     assert (found.events.person, found.events.address) == (10, 20) and found.events.everybody > 20
     assert (found.waiting.person, found.waiting.address, found.waiting.everybody) == (3, 6, 64)
     assert (found.live.person, found.live.address, found.live.everybody) == (1, 3, 6)
-    assert found.rooms.person < found.rooms.everybody and found.reading.everybody == 2
+    assert found.room.person < found.room.everybody
 
 
 class Clock:
@@ -67,11 +67,11 @@ def test_as_many_as_a_minute_come_at_once_and_then_at_the_rate(clock: Clock) -> 
 
 def test_a_full_bucket_is_enough_for_any_one_request(clock: Clock) -> None:
     limit = RateLimit(10, clock)
-    limit.take("a", weight=500)
+    limit.take("a", 500)
     with pytest.raises(Refused):
         limit.take("a")
     clock.now += 61.0
-    limit.take("a", weight=500)
+    limit.take("a", 500)
 
 
 def test_people_who_were_idle_longest_are_forgotten(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,11 +9,10 @@ from typing import Any
 
 from gradio.routes import App
 
-from webdemo.server.accounts.users import Users
 from webdemo.server.app import create_app
 
 from ..clients import settings_for
-from ..lab import stub_module
+from ..lab import add_accounts, stub_module
 
 
 class Backend:
@@ -30,8 +29,8 @@ class Backend:
     """
 
     def __init__(self, folder: Path) -> None:
-        Users(folder / "users").add("ada", "password of ada")
-        settings = settings_for(folder, users=folder / "users", host="0.0.0.0")
+        add_accounts(folder / "data", "ada")
+        settings = settings_for(folder, accounts=True, host="0.0.0.0")
         app = create_app(settings, engine=stub_module().StubEngine())
         found = list(_routes(app.routes))
         self.routes = {f"{method} {route.path}" for route in found for method in route.methods}

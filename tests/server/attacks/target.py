@@ -21,7 +21,6 @@ import httpx
 
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
-from webdemo.server.store.publishing import Publishing
 
 from ..lab import ROOT, add_accounts
 
@@ -48,8 +47,8 @@ class Target:
         self.canary.write_text(CANARY)
         given: dict[str, Any] = {"node": "target", "free_megabytes": 0, "rate": 100_000, "grace_seconds": 1}
         if accounts:
-            given |= {"users": folder / "users", "host": "0.0.0.0", "hosts": '["127.0.0.1"]'}
-            add_accounts(folder / "users", "ada", "eve")
+            given |= {"accounts": 1, "host": "0.0.0.0", "hosts": '["127.0.0.1"]'}
+            add_accounts(self.data, "ada", "eve")
         else:
             given |= {"open": 1}
         self.env = {f"PASDEDEUX_{name.upper()}": str(value) for name, value in {**given, **settings}.items()}
@@ -157,7 +156,7 @@ class Target:
         """Makes a public page of somebody's run; returns its key."""
         database = Database(self.data / "history.db")
         try:
-            return Publishing(Notebook(database, self.data / "motions")).publish(owner, run).key
+            return Notebook(database, self.data / "motions").publish(run, owner).key
         finally:
             database.close()
 

@@ -81,13 +81,7 @@ class Victim:
         run, study = self.things["run"], self.things["study"]
         return [
             self.target.rows(f"SELECT * FROM {table} WHERE {column} = '{key}'")
-            for table, column, key in (
-                ("runs", "id", run),
-                ("links", "run_id", run),
-                ("notes", "run_id", run),
-                ("studies", "id", study),
-                ("published", "run_id", run),
-            )
+            for table, column, key in (("runs", "id", run), ("shares", "run_id", run), ("studies", "id", study))
         ]
 
     def check(self, number: Callable[[str], int]) -> None:

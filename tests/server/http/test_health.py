@@ -60,8 +60,10 @@ def test_every_figure_is_there_and_counts(local: TestClient) -> None:
         key = tuple(sorted(labels.items()))
         return after[name][key] - before.get(name, {}).get(key, 0.0)
 
-    assert more("pasdedeux_http_requests_total", route="/gradio_api/call", method="POST", status="200") == 2
-    assert more("pasdedeux_http_seconds_count", route="/gradio_api/call") == 4
+    call = "/gradio_api/call/{api_name}"  # never what somebody wrote
+    assert more("pasdedeux_http_requests_total", route=call, method="POST", status="200") == 2
+    assert more("pasdedeux_http_seconds_count", route=f"{call}/{{event_id}}") == 2
+    assert more("pasdedeux_http_requests_total", route="/metrics", method="GET", status="200") == 1
     assert more("pasdedeux_runs_total", model=model, outcome="done") == 1
     (group,) = {dict(key)["model"] for key in after["pasdedeux_runs_total"] if dict(key)["outcome"] == "failed"}
     assert more("pasdedeux_runs_total", model=group, outcome="failed") == 1

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 from fastapi.testclient import TestClient
 
@@ -16,6 +17,8 @@ from motion import InputError
 from tests.server.clients import FIELDS, HERE, REACT, UPLOAD, client_of, events_of, lab_of, settings_for
 from tests.server.lab import stub_module
 from webdemo.server.accounts.quotas import Quota
+from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
+from webdemo.server.http import exchange
 from webdemo.server.queue.queue import FairQueue
 from webdemo.ui.visitor import Visitor
 
@@ -137,7 +140,7 @@ def test_one_address_does_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> 
                 time.sleep(0.01)
             yield from ()
 
-    queue = FairQueue(Busy(), None, Quota("runs waiting", 4, 3))  # type: ignore[arg-type]
+    queue = FairQueue(Busy(), Quota("runs waiting", 4, 3))  # type: ignore[arg-type]
     request = stub_module().GenerateRequest(prompt="x")
     jobs = [queue._enter("first", request, Visitor(person="first", address="a"))]
     assert started.wait(10)
@@ -147,3 +150,29 @@ def test_one_address_does_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> 
     jobs.append(queue._enter("other", request, Visitor(person="other", address="b")))
     for job in jobs:
         job.token.cancel()
+
+
+def test_whoever_asks_too_often_is_answered_once_a_second(
+    served: tuple[str, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Greedy connections would otherwise have the server do nothing but refuse, and /healthz would wait for that."""
+    host, port = served
+    headers, seconds, connections = {"cookie": f"{VISITOR_COOKIE}={new_token()}"}, 1.5, 5
+    refused: list[float] = []
+
+    def ask(until: float) -> None:
+        with httpx.Client(base_url=f"http://{host}:{port}", headers=headers, timeout=30) as client:
+            while time.monotonic() < until:
+                if client.post("/nothing").status_code == 429:
+                    refused.append(time.monotonic())
+
+    with httpx.Client(base_url=f"http://{host}:{port}", headers=headers, timeout=30) as client:
+        while client.post("/nothing").status_code != 429:
+            pass
+    monkeypatch.setattr(exchange, "BACK_OFF", 1.0)
+    threads = [threading.Thread(target=ask, args=(time.monotonic() + seconds,)) for _ in range(connections)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert 0 < len(refused) <= connections * (1 + seconds / exchange.BACK_OFF)

@@ -13,8 +13,8 @@ import pytest
 
 from motion import InputError
 from tests.server.attacks.target import Target
+from webdemo.server.http.routes import Refused
 from webdemo.server.live.stream import MOST_FRAMES
-from webdemo.server.live.streams import Replaced
 from webdemo.ui.visitor import Visitor
 
 from .test_streams import STUB, poses, streams
@@ -77,7 +77,7 @@ def test_a_newer_message_replaces_those_that_wait() -> None:
 
     first, *others, last, late = asyncio.run(flood())
     assert first["frames"] and last["frames"] and late["frames"]
-    assert len(others) == FLOOD - 2 and all(isinstance(other, Replaced) for other in others)
+    assert len(others) == FLOOD - 2 and all(isinstance(other, Refused) for other in others)
 
 
 def test_an_error_ends_its_own_message_alone() -> None:

@@ -19,7 +19,6 @@ from webdemo.server.app import engine_of
 from webdemo.server.cluster import ray_engine
 from webdemo.server.queue import queue as line
 from webdemo.server.queue.queue import FairQueue
-from webdemo.server.queue.turns import QueueLimits
 from webdemo.server.settings import Settings
 from webdemo.ui.runs import Waiting
 from webdemo.ui.visitor import Visitor
@@ -96,7 +95,7 @@ def make(
 ) -> tuple[Gate, People]:
     gate: Any = Gate()
     quota = Quota("runs waiting", person=waiting, everybody=everybody)
-    queue = FairQueue(gate, QueueLimits(**limits), quota)
+    queue = FairQueue(gate, quota, **limits)
     return gate, People(queue, monkeypatch)
 
 
@@ -279,7 +278,7 @@ def test_a_result_that_is_there_is_not_too_late(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(run, "monotonic", lambda: now)
     gate = Gate()
     gate.open.release()
-    queue = FairQueue(gate, QueueLimits(seconds=600))  # type: ignore[arg-type]
+    queue = FairQueue(gate, seconds=600)  # type: ignore[arg-type]
     events = queue.run("a session", request("x"))
     assert isinstance(next(events), Progress)
     wait_for(lambda: queue.running == 0)

@@ -20,7 +20,7 @@ from webdemo.inference import Engine
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
 from webdemo.inference.run import Result
-from webdemo.server.store.database import Database, Link, Run
+from webdemo.server.store.database import Database, Run, Share
 from webdemo.server.store.history import DAY
 from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Entry, Search
@@ -98,20 +98,17 @@ def test_others_see_nothing_but_by_a_link_that_lasts(history: Notebook) -> None:
         history.open(key, OTHER)
 
 
-def test_a_run_has_so_many_links_at_a_time(history: Notebook, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("webdemo.server.store.history.MOST_LINKS", 2)
+def test_a_run_has_one_link_at_a_time(history: Notebook) -> None:
     run = kept(history)
-    links = [history.link(run, ME) for _ in range(2)]
-    with pytest.raises(InputError, match="2 links to this run already"):
-        history.link(run, ME)
-    assert history.revoke(run, ME) == len(links)
-    history.link(run, ME)
+    first, _ = history.link(run, ME)
+    assert history.link(run, ME)[0] == first and history.publish(run, ME).key != first
+    assert history.revoke(run, ME) == 1 and history.link(run, ME)[0] != first
 
 
 def test_a_link_ends(history: Notebook) -> None:
     key, _ = history.link(kept(history), ME)
     with history.database.session.begin() as session:
-        session.execute(update(Link).values(until=time.time() - 1))
+        session.execute(update(Share).values(until=time.time() - 1))
     with pytest.raises(InputError, match="its link has expired"):
         history.open(key, OTHER)
 
@@ -169,11 +166,11 @@ def test_a_damaged_database_is_a_sentence_and_no_sql(history: Notebook) -> None:
     with pytest.raises(InputError, match="gone or damaged"):
         history.open(runs[0], ME)
     with history.database.engine.begin() as connection:
-        connection.exec_driver_sql("DROP TABLE links")
+        connection.exec_driver_sql("DROP TABLE shares")
     for act in (lambda: entries(history), lambda: history.link(runs[0], ME)):
         with pytest.raises(InputError) as error:
             act()
-        assert "history cannot be read or written" in str(error.value) and "links" not in str(error.value)
+        assert "history cannot be read or written" in str(error.value) and "shares" not in str(error.value)
 
 
 def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: Notebook) -> None:
@@ -215,8 +212,8 @@ def test_a_full_disk_is_a_sentence_and_leaves_nothing(history: Notebook, monkeyp
             history.finish(run, made(request))
     assert {path.name for path in history.folder.iterdir()} == {before}
     assert entries(history)[0].state == "failed"
-    history.free_bytes = 1e18
-    with pytest.raises(InputError, match="disk is nearly full"):
+    history.storage.free_bytes = 1e18
+    with pytest.raises(InputError, match="disk is full"):
         history.begin(ME, request, "more")
     history.open(before, ME)
 

@@ -21,6 +21,9 @@ def test_a_folder_does_not_show_its_person(root: Path) -> None:
 
 def test_files_belong_to_the_folder_they_lie_in() -> None:
     mine = folder_of("ann") / "x" / "walk.bvh"
+    assert not owns("ann", str(mine)), "it is not there"
+    mine.parent.mkdir(parents=True)
+    mine.write_text("")
     assert owns("ann", str(mine)) and not owns("bob", str(mine))
 
 

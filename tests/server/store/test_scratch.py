@@ -136,7 +136,7 @@ def test_uploads_are_weighed(tmp_path: Path) -> None:
 def test_nothing_is_taken_where_the_disk_is_nearly_full(tmp_path: Path) -> None:
     with client_of(settings_for(tmp_path, free_megabytes=1e12)) as client:
         said = events_of(client, "generate", FIELDS)
-        assert "event: error" in said and "disk is nearly full" in said
+        assert "event: error" in said and "disk is full" in said
         assert lab_of(client).history.search("local", Search()).total == 0
         answer = client.post(UPLOAD, files=SMALL)
         assert answer.status_code == 507 and "disk is full" in answer.json()["detail"]

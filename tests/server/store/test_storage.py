@@ -13,7 +13,7 @@ from sqlalchemy import select
 from motion import InputError
 from tests.server.lab import stub_module
 from webdemo.inference.requests import GenerateRequest
-from webdemo.server.accounts.quotas import Rooms
+from webdemo.server.accounts.quotas import Quota
 from webdemo.server.store.database import Database, Run
 from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.scratch import Scratch
@@ -30,7 +30,7 @@ PEOPLE = ("user ada", "user eve", "user bob")
 def notebook(tmp_path: Path) -> Iterator[Notebook]:
     database = Database(tmp_path / "h.db")
     scratch = Scratch(tmp_path / "s", 3e6)
-    storage = Storage(database, tmp_path / "motions", Rooms(person=8e5, everybody=1.6e6), scratch=scratch)
+    storage = Storage(database, tmp_path / "motions", Quota("bytes", person=8e5, everybody=1.6e6), scratch=scratch)
     yield Notebook(database, tmp_path / "motions", storage=storage)
     database.close()
 
@@ -87,10 +87,10 @@ def test_nobody_s_deeds_remove_what_is_another_s(notebook: Notebook, tmp_path: P
 
 
 def test_the_total_is_reached_and_one_s_own_runs_make_way_or_the_run_is_refused(notebook: Notebook) -> None:
-    notebook.storage.rooms = Rooms(person=1e9)
+    notebook.storage.room = Quota("bytes", person=1e9)
     theirs = {kept(notebook, "user ada", seed) for seed in range(40)}
     used = notebook.usage(Visitor("user ada", "user ada")).used
-    notebook.storage.rooms = Rooms(person=1e9, everybody=used + 3e5)
+    notebook.storage.room = Quota("bytes", person=1e9, everybody=used + 3e5)
     with pytest.raises(InputError, match="nothing of others is removed for yours"):
         for seed in range(40):
             notebook.favour(kept(notebook, "user eve", seed), "user eve", favourite=True)
@@ -101,7 +101,7 @@ def test_an_import_that_does_not_fit_is_refused_and_removes_nothing(notebook: No
     mine = {kept(notebook, "user ada", seed) for seed in range(5)}
     file = shutil.copy(notebook.folder / min(mine) / "1.npz", tmp_path)
     used = notebook.usage(Visitor("user ada", "user ada")).used
-    notebook.storage.rooms = Rooms(person=used / 0.75 + 1000)
+    notebook.storage.room = Quota("bytes", person=used / 0.75 + 1000)
     with pytest.raises(InputError, match="your room is used up"):
         notebook.take_in("user ada", [Path(file)])
     assert runs_of(notebook, "user ada") == mine

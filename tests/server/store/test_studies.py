@@ -12,7 +12,7 @@ import pytest
 from motion import InputError
 from tests.server.clients import no_room
 from tests.server.lab import stub_module
-from webdemo.server.accounts.quotas import Rooms
+from webdemo.server.accounts.quotas import Quota
 from webdemo.server.store.database import Database
 from webdemo.server.store.studies import Studies
 from webdemo.study import Pair, StudyEntry
@@ -150,10 +150,10 @@ def test_what_makes_no_study_is_a_sentence_and_leaves_nothing(studies: Studies) 
             new(studies, question=question)
     with pytest.raises(InputError, match="sign in or allow cookies"):
         new(studies, owner="")
-    studies.storage.rooms = Rooms(everybody=1)
+    studies.storage.room = Quota("bytes", everybody=1)
     with pytest.raises(InputError, match="nothing of others is removed for yours"):
         new(studies)
-    assert studies.mine(ME) == [] and not studies.folder.exists()
+    assert studies.mine(ME) == [] and not any(studies.folder.iterdir())
 
 
 def test_a_full_disk_leaves_no_half_study(tmp_path: Path) -> None:

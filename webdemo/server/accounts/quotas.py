@@ -1,9 +1,8 @@
-"""What a person may use, in one place: connections, requests, events, reading places, runs, live streams and megabytes.
+"""What a person may use, in one place: connections, requests, events, runs, live streams and megabytes.
 
-:class:`Quotas` has all of them, made from the settings. What is held at a time is compared with a :class:`Quota`, what
-comes again and again with a :class:`RateLimit`, and what is stored with :class:`Rooms`
-(:mod:`webdemo.server.store.storage` knows the sizes). A person without an account is a cookie, which they could throw
-away, so everybody of one address together has a limit as well.
+:class:`Quotas` has all of them, made from the settings. What is held at a time is compared with a :class:`Quota`,
+and what comes again and again with a :class:`RateLimit`. A person without an account is a cookie, which they could
+throw away, so everybody of one address together has a limit as well.
 """
 
 from __future__ import annotations
@@ -18,7 +17,6 @@ from dataclasses import dataclass
 from motion import InputError
 from webdemo.server.http.routes import Refused
 from webdemo.server.settings import Settings
-from webdemo.ui.places import AT_ONCE
 
 GETS = 1500
 """GETs of one person in a minute: the page with all of its files takes about 150."""
@@ -54,7 +52,7 @@ class Quota:
     what: str
     person: float = math.inf
     address: float = math.inf
-    everybody: int = 2**31
+    everybody: float = math.inf
 
     def check(self, person: str, address: str, held: Iterable[tuple[str, str]]) -> None:
         """Raises OverQuota if one more were too many.
@@ -67,79 +65,40 @@ class Quota:
         holders = list(held)
         mine = sum(person == other for other, _ in holders)
         near = sum(address == other for _, other in holders) if address else 0
-        if mine >= self.person:
-            raise OverQuota(
-                "person", f"You already have {mine} {self.what}: wait for one or cancel it, then try again."
-            )
-        if near >= self.address:
-            raise OverQuota(
-                "address", f"People from your network have {near} {self.what} already: try again in a few minutes."
-            )
-        if len(holders) >= self.everybody:
-            raise OverQuota(
-                "everybody", f"There are {len(holders)} {self.what} here already: try again in a few minutes."
-            )
+        for whose, count, most, sentence in (
+            ("person", mine, self.person, "You already have {} {}: wait for one or cancel it, then try again."),
+            ("address", near, self.address, "People from your network have {} {} already: try again in a few minutes."),
+            ("everybody", len(holders), self.everybody, "There are {} {} here already: try again in a few minutes."),
+        ):
+            if count >= most:
+                raise OverQuota(whose, sentence.format(count, self.what))
 
 
-@dataclass(frozen=True)
-class Rooms:
-    """Bytes that may be stored.
-
-    Attributes:
-        person: for runs, studies, uploads and downloads of a person for whom nothing else is set.
-        address: for runs and studies of all people of one address, where they have no accounts.
-        everybody: for all people's runs and studies.
-    """
-
-    person: float = math.inf
-    address: float = math.inf
-    everybody: float = 2e9
-
-
-@dataclass(frozen=True, kw_only=True)
 class Quotas:
-    """Everything that is limited for a person.
+    """Everything that is limited for a person, by a server's settings.
 
     Attributes:
         connections: open ones.
         requests, address_requests: a minute, of those that change something, for a person and for an address.
         gets, address_gets: a minute, of the others.
         events: unfinished events of the page: runs, films, files that are read.
-        reading: files that are read at a time.
         waiting: runs in the queue.
         live: live streams.
-        rooms: bytes.
+        room: bytes that are stored. A person's is for runs, studies, uploads and downloads, that of an address and of
+            everybody for runs and studies.
     """
 
-    connections: Quota
-    requests: RateLimit
-    address_requests: RateLimit
-    gets: RateLimit
-    address_gets: RateLimit
-    events: Quota
-    reading: Quota
-    waiting: Quota
-    live: Quota
-    rooms: Rooms
-
-    @classmethod
-    def of(cls, settings: Settings) -> Quotas:
-        """Those of a server's settings."""
+    def __init__(self, settings: Settings) -> None:
         people = settings.address_people
         near, gets = settings.events * people, max(GETS, settings.rate)
-        total = settings.keep_megabytes * 2**20
-        return cls(
-            connections=Quota("connections", address=settings.address_connections, everybody=settings.connections),
-            requests=RateLimit(settings.rate),
-            address_requests=RateLimit(settings.rate * people),
-            gets=RateLimit(gets),
-            address_gets=RateLimit(gets * people),
-            events=Quota("unfinished tasks", settings.events, near, 2 * max(near, settings.queue) + 64),
-            reading=Quota("files being read", 1, 1, AT_ONCE),
-            waiting=Quota("runs waiting", settings.waiting, settings.waiting * people, settings.queue),
-            live=Quota("live streams", 1, max(1, settings.live // 2), settings.live),
-            rooms=Rooms(settings.person_bytes, min(people * settings.person_bytes, ADDRESS_SHARE * total), total),
-        )
+        total, own = settings.keep_megabytes * 2**20, settings.person_bytes
+        self.connections = Quota("connections", address=settings.address_connections, everybody=settings.connections)
+        self.requests, self.address_requests = RateLimit(settings.rate), RateLimit(settings.rate * people)
+        self.gets, self.address_gets = RateLimit(gets), RateLimit(gets * people)
+        self.events = Quota("unfinished tasks", settings.events, near, 2 * max(near, settings.queue) + 64)
+        self.waiting = Quota("runs waiting", settings.waiting, settings.waiting * people, settings.queue)
+        self.live = Quota("live streams", 1, max(1, settings.live // 2), settings.live)
+        self.room = Quota("bytes", own, min(people * own, ADDRESS_SHARE * total), total)
 
 
 # ---- how often ---------------------------------------------------------------------------------------
@@ -175,7 +134,7 @@ class Buckets:
         return min(self.size, left + (self.clock() - then) * self.a_second)
 
 
-class RateLimit:
+class RateLimit(Buckets):
     """Requests of each person: so many a minute, and as many at once.
 
     The package ``limits`` has no request that weighs more than a full bucket, as a large upload does.
@@ -186,16 +145,13 @@ class RateLimit:
     """
 
     def __init__(self, a_minute: int, clock: Callable[[], float] = time.monotonic) -> None:
-        self._buckets = Buckets(a_minute, 60.0, clock)
+        super().__init__(a_minute, 60.0, clock)
 
-    def take(self, person: str, weight: float = 1.0) -> None:
-        """Takes a request, or one as heavy as several; raises Refused if too little is left.
-
-        A bucket that is full is enough for any one request.
-        """
-        if self._buckets.wait(person, min(weight, self._buckets.size)):
+    def take(self, key: str, tokens: float = 1.0) -> None:
+        """Takes a request, or one as heavy as several; raises Refused if less is left than that, or a full bucket."""
+        if self.wait(key, min(tokens, self.size)):
             raise Refused(429, "Too many requests in one minute: wait a little.", "rate")
-        self._buckets.take(person, weight)
+        super().take(key, tokens)
 
 
 # ---- whose address -----------------------------------------------------------------------------------

@@ -7,102 +7,67 @@ import re
 import secrets
 import threading
 from collections import OrderedDict
-from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, cast
 
 from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
 from starlette.responses import Response
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import Scope
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
-from motion import InputError
 from webdemo.server.accounts.quotas import network_of
 from webdemo.server.http.routes import Refused
 from webdemo.server.settings import Settings, is_loopback, on_a_space
+from webdemo.server.store.database import Account
 from webdemo.ui.visitor import Visitor
 
-from .people import People
-from .users import SUSPENDED, SignIns
+from .accounts import SUSPENDED, Accounts
 
 SESSION_COOKIE = "pasdedeux_session"
 VISITOR_COOKIE = "pasdedeux_visitor"
 KNOWN_COOKIE = "pasdedeux_known"
+YEAR = 365 * 86_400.0
 _MOST = 20_000
-NO_ACCOUNTS = "The server's accounts cannot be read: tell the person who runs it."
+_NOT_OPEN = "This server is for its own machine: its owner can make accounts or set PASDEDEUX_OPEN=1."
 
 
-class Visitors:
-    """Identifies the sender of a request.
+def find_visitor(settings: Settings, accounts: Accounts, scope: Scope, nobody: Visitor) -> Visitor | None:
+    """The sender of a request, or None if they must sign in first.
 
     Args:
         settings: whether there are accounts, and whether other machines may connect.
-        sign_ins: sessions of people with accounts; None without accounts.
-        people: notes the people that a proxy names.
+        accounts: of people who sign in, or whom a proxy names.
+        scope: the request's.
+        nobody: a visitor of whom no more is known than the request.
+
+    Raises:
+        Refused: if a request from elsewhere arrives at a server that is not open, or at one whose people sign in at its
+            proxy alone.
     """
-
-    def __init__(self, settings: Settings, sign_ins: SignIns | None, people: People) -> None:
-        self.settings, self.sign_ins, self.people = settings, sign_ins, people
-
-    def of(
-        self, cookies: Mapping[str, str], address: str, *, reference: str, base: str, by_proxy: str = ""
-    ) -> Visitor | None:
-        """The visitor, or None if they must sign in first.
-
-        Args:
-            cookies: of the request.
-            address: that it came from.
-            reference: names the request.
-            base: address of the page.
-            by_proxy: the name that a trusted proxy gives.
-
-        Raises:
-            Refused: if a request from elsewhere arrives at a server that is not open, or at one whose people sign in
-                at its proxy alone.
-        """
-        if by_proxy:
-            owner = self._owner(by_proxy)
-            if not self.people.arrive(owner.removeprefix("user ")):
+    cookies = cookie_parser(dict(scope["headers"]).get(b"cookie", b"").decode("latin-1"))
+    if settings.sign_in:
+        account: Account | None
+        if by_proxy := person_by_proxy(settings, scope):
+            account = accounts.arrive(by_proxy)
+            if account.suspended:
                 raise Refused(403, SUSPENDED, "suspended")
-            return Visitor(owner, owner, reference, base, by_proxy)
-        if self.sign_ins is None and self.settings.proxy_user:
+        elif not settings.accounts:
             raise Refused(401, _NOT_BY_PROXY, "proxy")
-        if self.sign_ins is not None:
-            person = self._signed_in(cookies.get(SESSION_COOKIE, ""))
-            if person is None:
-                return None
-            owner = self._owner(person)
-            return Visitor(owner, owner, reference, base, person)
-        local = is_loopback(address)
-        if not local and not self.settings.open:
-            raise Refused(
-                403,
-                "This server is for its own machine: its owner can make accounts or set PASDEDEUX_OPEN=1.",
-                "not open",
-            )
-        network = network_of(address)
-        token = cookies.get(VISITOR_COOKIE, "")
-        browser = f"visitor {digest(token)}" if 20 <= len(token) <= 100 else ""
-        if self.settings.open:
-            return Visitor(browser or f"address {network}", browser, reference, base, address=network)
-        return Visitor(browser or "local", "local", reference, base)
-
-    def _owner(self, name: str) -> str:
-        """The owner of the runs of a person who has signed in: their account's key, or the name that a proxy gives."""
-        try:
-            key = self.sign_ins.users.key(name) if self.sign_ins is not None else None
-        except InputError:
-            raise Refused(503, NO_ACCOUNTS, "accounts") from None
-        return f"user {key or name}"
-
-    def _signed_in(self, token: str) -> str | None:
-        if not token or self.sign_ins is None:
+        else:
+            account = accounts.person(cookies.get(SESSION_COOKIE, ""))
+        if account is None:
             return None
-        try:
-            return self.sign_ins.person(token)
-        except InputError:
-            raise Refused(503, NO_ACCOUNTS, "accounts") from None
+        return replace(nobody, person=account.owner, owner=account.owner, account=account.name)
+    address = (scope.get("client") or ("127.0.0.1", 0))[0]
+    if not is_loopback(address) and not settings.open:
+        raise Refused(403, _NOT_OPEN, "not open")
+    token = cookies.get(VISITOR_COOKIE, "")
+    browser = f"visitor {digest(token)}" if 20 <= len(token) <= 100 else ""
+    if settings.open:
+        return replace(nobody, person=browser or nobody.person, owner=browser, address=network_of(address))
+    return replace(nobody, person=browser or "local", owner="local")
 
 
 class Bindings:
@@ -179,36 +144,18 @@ def set_cookie(response: Response, name: str, value: str, *, seconds: float, roo
     )
 
 
-def read_cookies(headers: dict[bytes, bytes]) -> dict[str, str]:
-    """The cookies of a request, by their names."""
-    return cookie_parser(headers.get(b"cookie", b"").decode("latin-1"))
-
-
 # ---- the header of a proxy -----------------------------------------------------------------------
 # Who a person is, the proxy says, and nobody else can. uvicorn puts the forwarded address in the place of the proxy's.
-# So the one that the connection came from is written down before, by :class:`PeerNoted`, and a header counts only if
-# that is a trusted proxy's.
+# So the connection itself writes down where it came from (:mod:`webdemo.server.http.connections`), and a header counts
+# only if that is a trusted proxy's.
 
 
-PEER = "pasdedeux.peer"
-"""Key of a request's scope: the address that its connection came from."""
+PEER = "peer"
+"""Key of the state of a request's scope: the address that its connection came from."""
 NAME = re.compile(r"\A[a-z0-9][a-z0-9._@+-]{0,79}\Z")
 """Names of people who sign in elsewhere, in lower case: also addresses of mail."""
 _NOT_BY_PROXY = "This lab is reached through its proxy, where you sign in: open its usual address."
 _BAD_NAME = "The proxy's name for you cannot be used here: tell the person who runs this server."
-
-
-class PeerNoted:
-    """Writes the address of the connection into each request's scope, before a proxy's header changes it."""
-
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Passes a request on."""
-        if client := scope.get("client"):
-            scope = {**scope, PEER: client[0]}
-        await self.app(scope, receive, send)
 
 
 @lru_cache(maxsize=8)
@@ -227,7 +174,7 @@ def person_by_proxy(settings: Settings, scope: Scope) -> str:
     names = Headers(scope=scope).getlist(settings.proxy_user) if settings.proxy_user else []
     if not names:
         return ""
-    if scope.get(PEER, "") not in trusted_hosts(tuple(settings.proxies)):
+    if scope.get("state", {}).get(PEER, "") not in trusted_hosts(tuple(settings.proxies)):
         raise Refused(403, _NOT_BY_PROXY, "proxy")
     name = names[0].strip().lower()
     if not name:

@@ -260,12 +260,9 @@ class RayEngine:
                 "upscale_delay_s": 5,
                 "downscale_delay_s": 120,
             },
-            ray_actor_options={"num_cpus": self._cores(model)},
+            ray_actor_options={"num_cpus": self.cores if model == SamplingRequest.model else self.cores / 2},
             health_check_period_s=5,
         )
         weights = None if self.weights is None else str(self.weights)
         application = replica.bind(model, weights, loopback=not self.address)
         return serve.run(application, name=name, route_prefix=None)
-
-    def _cores(self, model: str) -> float:
-        return self.cores if model == SamplingRequest.model else self.cores / 2

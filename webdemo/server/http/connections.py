@@ -13,7 +13,7 @@ import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from webdemo.server.accounts.quotas import Quota, network_of
-from webdemo.server.accounts.visitors import trusted_hosts
+from webdemo.server.accounts.visitors import PEER, trusted_hosts
 from webdemo.server.settings import Settings
 
 HEAD_BYTES = 32 * 1024
@@ -52,11 +52,12 @@ def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
     """
     counts: Counter[str] = Counter()
     trusted = trusted_hosts(tuple(settings.proxies))
+    every = min(settings.header_seconds, settings.answer_seconds) / 4
 
     class Bounded(H11Protocol):
         address: str | None = None
-        waiting: asyncio.TimerHandle | None = None
         looking: asyncio.TimerHandle | None = None
+        head_since: float | None = None
         moved = 0.0
 
         def __init__(self, *config: Any, **more: Any) -> None:
@@ -65,15 +66,15 @@ def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
 
         def connection_made(self, transport: Any) -> None:
             super().connection_made(transport)
+            self.app_state = {**self.app_state, PEER: self.client[0] if self.client else ""}
             if len(self.connections) > quota.everybody:
                 self._send_away()
             elif self._counts_for(self.client[0] if self.client else ""):
-                self._expect_head()
+                self.head_since = self.loop.time()
                 self._look()
 
         def connection_lost(self, exc: Exception | None) -> None:
             super().connection_lost(exc)
-            self._stop_expecting()
             if self.looking is not None:
                 self.looking.cancel()
             self._count(None)
@@ -103,8 +104,11 @@ def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
             self.transport.close()
 
         def _look(self) -> None:
-            """Ends the connection where an answer has waited to be read for too long."""
+            """Ends the connection where a head does not come, or an answer has waited to be read for too long."""
             now = self.loop.time()
+            if self.head_since is not None and now - self.head_since > settings.header_seconds:
+                self.transport.close()
+                return
             if not self.transport.get_write_buffer_size():
                 self.moved = now
             elif now - self.moved > settings.answer_seconds:
@@ -113,7 +117,7 @@ def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
                 wire.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, now_and_nothing_more)
                 self.transport.abort()
                 return
-            self.looking = self.loop.call_later(settings.answer_seconds / 4, self._look)
+            self.looking = self.loop.call_later(every, self._look)
 
         def send_400_response(self, msg: str) -> None:
             with contextlib.suppress(h11.LocalProtocolError):  # an answer has begun
@@ -128,29 +132,12 @@ def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
             before = self.cycle
             super().data_received(data)
             if self.cycle is not before:
-                self._stop_expecting()
+                self.head_since = None
                 if self.client and self.client[0] in trusted:
                     named = b", ".join(value for name, value in self.headers if name == b"x-forwarded-for")
                     host = trusted.get_trusted_client_address(named.decode("latin-1"))[0]
                     self._counts_for(host or self.client[0])
-            elif self._between and self.waiting is None:  # the head of a further request has begun
-                self._expect_head()
-
-        @property
-        def _between(self) -> bool:
-            return self.cycle is None or self.cycle.response_complete
-
-        def _expect_head(self) -> None:
-            self.waiting = self.loop.call_later(settings.header_seconds, self._head_is_late)
-
-        def _stop_expecting(self) -> None:
-            if self.waiting is not None:
-                self.waiting.cancel()
-                self.waiting = None
-
-        def _head_is_late(self) -> None:
-            self.waiting = None
-            if self._between:
-                self.transport.close()
+            elif self.head_since is None and (self.cycle is None or self.cycle.response_complete):
+                self.head_since = self.loop.time()  # the head of a further request has begun
 
     return Bounded

@@ -71,23 +71,14 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -
         if wanted.startswith("/study/")
         else "to generate motion of two people"
     )
-    focus = ("", " autofocus") if name else (" autofocus", "")
-    fields = "".join(
-        f'<label>{label}<input name="{key}" autocomplete="{kind}" required{more}></label>'
-        for label, key, kind, more in (
-            (
-                "Name",
-                "username",
-                "username",
-                f' maxlength="40" autocapitalize="none" value="{html.escape(name, quote=True)}"{focus[0]}',
-            ),
-            ("Password", "password", "current-password", f' type="password"{focus[1]}'),
-        )
-    )
+    shown = html.escape(name, quote=True)
+    name_more, password_more = ("", " autofocus") if name else (" autofocus", "")
     return card(
         f'<p>Sign in {why}.</p>{alert}<form method="post" action="{html.escape(action, quote=True)}">'
         f'<input type="hidden" name="next" value="{html.escape(wanted, quote=True)}">'
-        f"{fields}<button>Sign in</button></form>"
+        '<label>Name<input name="username" autocomplete="username" required maxlength="40" autocapitalize="none" '
+        f'value="{shown}"{name_more}></label><label>Password<input name="password" type="password" '
+        f'autocomplete="current-password" required{password_more}></label><button>Sign in</button></form>'
         "<p><small>No account, or forgotten your password? Ask the person who runs this server."
         "</small></p>"
     )

@@ -6,12 +6,9 @@ import asyncio
 import json
 import time
 import uuid
-from collections.abc import Callable, Sequence
-from pathlib import PurePath
+from collections.abc import Sequence
 from typing import Any
 
-from python_multipart.exceptions import FormParserError
-from python_multipart.multipart import MultipartParser, parse_options_header
 from starlette.datastructures import MutableHeaders
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.types import Message, Receive, Scope, Send
@@ -19,37 +16,35 @@ from starlette.types import Message, Receive, Scope, Send
 from webdemo.server.settings import on_a_space
 
 from .error_pages import message_card
-from .routes import Refused, is_embed, is_public_page
+from .routes import Refused, is_embed, is_public_page, is_upload
 
-_POLICY = (
+_FROM_HERE = (
     "default-src 'none'",
-    # Gradio starts by scripts within the page and compiles those of its events; WebGL drawing does as well.
-    "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:",
     "worker-src 'self' blob:",
     "style-src 'self' 'unsafe-inline'",
     "img-src 'self' data: blob:",
+    "connect-src 'self' data: blob:",
+)
+_POLICY = (
+    *_FROM_HERE,
+    # Gradio starts by scripts within the page and compiles those of its events; WebGL drawing does as well.
+    "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:",
     "media-src 'self' data: blob:",
     "font-src 'self' data:",
-    "connect-src 'self' data: blob:",
     "manifest-src 'self'",
     "form-action 'self'",
     "base-uri 'self'",
 )
 """Content security policy: the page loads everything from this server, nothing from other hosts."""
-_PUBLIC_POLICY = (
-    "default-src 'none'",
-    "script-src 'self' 'unsafe-eval' blob:",  # drawing by WebGL compiles
-    "worker-src 'self' blob:",
-    "style-src 'self' 'unsafe-inline'",
-    "img-src 'self' data: blob:",
-    "connect-src 'self' data: blob:",
-    "form-action 'none'",
-    "base-uri 'none'",
-)
-"""That of public pages, which run no script within the page and send nothing."""
+_PUBLIC_POLICY = (*_FROM_HERE, "script-src 'self' 'unsafe-eval' blob:", "form-action 'none'", "base-uri 'none'")
+"""That of public pages, which run no script within the page and send nothing; drawing by WebGL compiles."""
 _NOT_FRAMED = "frame-ancestors 'self'"
 """Not on a Space, which shows its page in a frame."""
 _NOBODY = "'none'"
+BACK_OFF = 1.0
+"""Seconds before somebody is told that they ask too often. They would ask again at once, and to refuse costs as much as
+to serve: so a connection that does nothing else costs one refusal a second."""
+BAD_UPLOAD = "The upload cannot be read: choose the file again."
 
 
 class Exchange:
@@ -69,7 +64,6 @@ class Exchange:
         body: the request's; a refusal of it is the answer, whatever its reader makes of that.
         cookie: a Set-Cookie header that the answer gets.
         path: below ``root``; "" until the guard has read it.
-        heard: is given every part of the answer's body before it is sent.
     """
 
     def __init__(self, scope: Scope, send: Send, *, root: str, frame_sites: Sequence[str] = ()) -> None:
@@ -81,10 +75,8 @@ class Exchange:
         self.status, self.first_byte = 0, 0.0
         self.body: BoundedBody | None = None
         self.cookie = ""
-        self.heard: Callable[[bytes], None] | None = None
         self._began = time.perf_counter()
         self._held: list[Message] = []
-        self._instead = (500, 404) if self.in_browser else (500,)
 
     @property
     def in_browser(self) -> bool:
@@ -100,17 +92,22 @@ class Exchange:
         """Sends a part of the page's answer, or holds it where there may be something better to say."""
         if self.body is not None and self.body.refused is not None and not self.status:
             return
-        if self._held or (message["type"] == "http.response.start" and message["status"] in self._instead):
+        if self._held or (message["type"] == "http.response.start" and self._is_replaced(message["status"])):
             self._held.append(message)
             return
         await self._pass_on(message)
 
+    def _is_replaced(self, status: int) -> bool:
+        return status == 500 or (status == 404 and self.in_browser) or (status in (400, 413) and is_upload(self.path))
+
     async def finish(self) -> None:
-        """Sends what was held; raises Refused for a place that does not exist, or a body that was refused."""
+        """Sends what was held; raises Refused for a place or an upload that is none, or a body that was refused."""
         if self.body is not None and self.body.refused is not None:
             raise self.body.refused
         if self._held and self._held[0]["status"] == 404:
             raise Refused(404, "There is nothing here.", "not found")
+        if self._held and self._held[0]["status"] in (400, 413):
+            raise Refused(400, BAD_UPLOAD, "bad body")
         if self._held and _is_sentence(self._held):
             self._held[0]["status"] = 422
         for message in self._held:
@@ -127,10 +124,10 @@ class Exchange:
 
     async def _pass_on(self, message: Message) -> None:
         if message["type"] == "http.response.start":
+            if message["status"] == 429:
+                await asyncio.sleep(BACK_OFF)
             self.status, self.first_byte = message["status"], self.seconds
             self._dress(MutableHeaders(scope=message))
-        elif self.heard is not None and self.status == 200:
-            self.heard(message.get("body", b""))
         await self._send(message)
 
     def _dress(self, headers: MutableHeaders) -> None:
@@ -187,11 +184,10 @@ class BoundedBody:
         receive: source of the body.
         most: most bytes.
         seconds: time from now in which it must arrive.
-        form: checks the parts of an upload on the way.
     """
 
-    def __init__(self, receive: Receive, *, most: float, seconds: float, form: UploadForm | None = None) -> None:
-        self._receive, self.most, self._form = receive, most, form
+    def __init__(self, receive: Receive, *, most: float, seconds: float) -> None:
+        self._receive, self.most = receive, most
         self._until = time.monotonic() + seconds
         self._size = 0
         self._ended = False
@@ -221,8 +217,6 @@ class BoundedBody:
             self._ended = not message.get("more_body", False)
             if self._size > self.most:
                 raise too_large(self.most)
-            if self._form is not None:
-                self._form.feed(message.get("body", b""), last=self._ended)
         else:
             self._ended = True
         return message
@@ -239,83 +233,3 @@ class BoundedBody:
 def too_large(most: float) -> Refused:
     """The refusal of a body above ``most`` bytes."""
     return Refused(413, f"The request has more than the {most / 2**20:g} MB allowed: send less.", "too large")
-
-
-# ---- the form of an upload --------------------------------------------------------------------------
-
-
-MOST_FILES = 16
-"""Files in one upload."""
-
-
-class UploadForm:
-    """Reads the heads of a form's parts.
-
-    Args:
-        content_type: the request's.
-
-    Raises:
-        Refused: if it is no form with files.
-    """
-
-    def __init__(self, content_type: bytes) -> None:
-        kind, options = parse_options_header(content_type)
-        boundary = options.get(b"boundary", b"")
-        if kind != b"multipart/form-data" or not boundary or len(boundary) > 200:
-            raise _malformed("it is not multipart/form-data")
-        if options.get(b"charset", b"utf-8").lower() not in (b"utf-8", b"utf8"):
-            raise _malformed("its character set is not UTF-8")
-        self._name, self._value = b"", b""
-        self._disposition = b""
-        self._files, self._ended = 0, False
-        self._parser = MultipartParser(
-            boundary,
-            {
-                "on_header_field": self._on_name,
-                "on_header_value": self._on_value,
-                "on_header_end": self._on_header,
-                "on_headers_finished": self._on_part,
-                "on_end": self._on_end,
-            },
-        )
-
-    def feed(self, chunk: bytes, *, last: bool) -> None:
-        """Takes what came of the body; raises Refused if its form is wrong."""
-        try:
-            self._parser.write(chunk)
-        except FormParserError:
-            raise _malformed("its form is damaged") from None
-        if last and not (self._ended and self._files):
-            raise _malformed("its form is cut short" if self._files else "no file is in it")
-
-    def _on_name(self, data: bytes, start: int, end: int) -> None:
-        self._name += data[start:end]
-
-    def _on_value(self, data: bytes, start: int, end: int) -> None:
-        self._value += data[start:end]
-        if len(self._value) > 8192:
-            raise _malformed("the head of a file is too long")
-
-    def _on_header(self) -> None:
-        if self._name.lower() == b"content-disposition":
-            self._disposition = self._value
-        self._name, self._value = b"", b""
-
-    def _on_part(self) -> None:
-        _, options = parse_options_header(self._disposition)
-        self._disposition = b""
-        name = options.get(b"filename", b"").decode("utf-8", "replace")
-        if options.get(b"name") != b"files" or b"filename" not in options:
-            raise _malformed('its files must be called "files"')
-        if not any(letter.isalnum() for letter in PurePath(name).name):
-            raise _malformed("a file has no name")
-        self._files += 1
-        if self._files > MOST_FILES:
-            raise _malformed(f"it has more than {MOST_FILES} files")
-
-    def _on_end(self) -> None:
-        self._ended = True
-
-
-def _malformed(reason: str) -> Refused:
-    return Refused(400, f"The upload cannot be read, {reason}: choose the file again.", "bad body")

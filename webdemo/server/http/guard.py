@@ -6,13 +6,10 @@ without naming the setting, the second bounds no time. So both are done here.
 
 from __future__ import annotations
 
-import errno
 import hmac
 import json
 import logging
 import re
-import shutil
-from collections.abc import Callable
 from functools import partial
 from urllib.parse import parse_qs, quote, urlsplit
 
@@ -23,27 +20,20 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from motion import InputError
-from webdemo.server.accounts.quotas import Quotas, RateLimit, network_of
-from webdemo.server.accounts.visitors import (
-    VISITOR_COOKIE,
-    Bindings,
-    Visitors,
-    new_token,
-    person_by_proxy,
-    read_cookies,
-    set_cookie,
-)
+from webdemo.server.accounts.quotas import RateLimit, network_of
+from webdemo.server.accounts.visitors import VISITOR_COOKIE, YEAR, find_visitor, new_token, set_cookie
 from webdemo.server.audit import SENDER
+from webdemo.server.lab import Lab
 from webdemo.server.logs import REFERENCE
 from webdemo.server.settings import Settings, is_loopback, on_a_space
-from webdemo.server.store.database import is_full
+from webdemo.server.store.database import BROKEN, DISK_FULL, is_full
 from webdemo.server.store.scratch import PERSON
 from webdemo.ui.visitor import Visitor
 
-from .exchange import BoundedBody, Exchange, UploadForm, declared_length, too_large
-from .health import Figures
+from .exchange import BAD_UPLOAD, BoundedBody, Exchange, declared_length, too_large
+from .page_html import PATHS
 from .payloads import Payloads
-from .routes import API, LIVE, MESSAGE, Refused, is_public_page, is_upload, needs_no_sign_in, path_below, route_of
+from .routes import API, LIVE, Refused, is_public_page, is_upload, needs_no_sign_in, path_below
 
 log = logging.getLogger(__name__)
 
@@ -51,12 +41,8 @@ _NOT_HEARD = (b"x-forwarded-host", b"x-forwarded-proto", b"x-gradio-server")
 """Headers from any client from which Gradio would take the page's address. Here they are dropped: the address is
 Host's, and the scheme is that of a trusted proxy."""
 _CHANGING = ("POST", "PUT", "PATCH", "DELETE")
-_DISK = "The server's disk is full, so nothing more can be kept: tell the person who runs it."
-_DATABASE = "The server's database cannot be read or written: tell the person who runs it."
-_ANSWERS = frozenset(f"{API}{name}" for name in ("queue/data", "call", "run", "api"))
+_ANSWERS = tuple(f"{API}{name}/" for name in ("queue/data", "call", "run", "api"))
 """Paths that send the results of runs."""
-_CALLS = frozenset(f"{API}{name}" for name in ("queue/join", "call"))
-"""Paths whose responses hold the id of a call, with which its result is fetched."""
 _WATCHED = ("/healthz", "/metrics")
 """Paths for those who watch the server, which have rules of their own and say what is wrong."""
 _LIVE_WEIGHT = 0.05
@@ -64,6 +50,8 @@ _LIVE_WEIGHT = 0.05
 _DEAR = frozenset(("/", "/config", f"{API}info", f"{API}startup-events"))
 _DEAR_WEIGHT = 10.0
 """The number of GETs that one of these counts as: they are long, or made anew for a name of the server's."""
+_BY_A_BAD_FORM = (AttributeError, LookupError, TypeError, ValueError)
+"""What Gradio raises over a form that is none."""
 _HOST = re.compile(r"[a-z0-9._\[\]:-]*+")
 _MOST_FIELDS = 50
 """Parameters of an address."""
@@ -71,44 +59,20 @@ _MOST_VALUES = 20_000
 """Of a call's body: the page's own have a few dozen."""
 
 
-class OpenAnswers:
-    """The number of run results being sent; used only by the server's main thread."""
-
-    count = 0
-
-
 class Guard:
     """The outermost ASGI middleware.
 
     Args:
         app: the guarded application.
-        settings: limits and host names.
-        quotas: requests of a person and of an address.
-        visitors: identifies visitors.
-        figures: metrics to update.
-        answers: counts the results being sent.
+        lab: whose limits hold.
         payloads: validates the payloads of calls.
-        admit: makes room for an upload of a visitor, or raises InputError.
     """
 
-    def __init__(
-        self,
-        app: ASGIApp,
-        *,
-        settings: Settings,
-        visitors: Visitors,
-        quotas: Quotas,
-        figures: Figures,
-        answers: OpenAnswers,
-        payloads: Payloads,
-        admit: Callable[[Visitor, float], None],
-    ) -> None:
-        self.app, self.settings, self.visitors, self.figures = app, settings, visitors, figures
-        self.answers, self.payloads, self.admit = answers, payloads, admit
-        self.bindings = Bindings()
-        self.quotas = quotas
-        self.hosts = {name.lower() for name in settings.hosts}
-        if self.hosts or settings.local:  # its own health check, and tunnels to it, name the loopback
+    def __init__(self, app: ASGIApp, *, lab: Lab, payloads: Payloads) -> None:
+        self.app, self.lab, self.payloads = app, lab, payloads
+        self.settings, self.quotas, self.figures, self.bindings = lab.settings, lab.quotas, lab.figures, lab.bindings
+        self.hosts = {name.lower() for name in lab.settings.hosts}
+        if self.hosts or lab.settings.local:  # its own health check, and tunnels to it, name the loopback
             self.hosts |= {"localhost", "127.0.0.1", "::1"}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -123,23 +87,21 @@ class Guard:
         REFERENCE.set(exchange.reference)
         address = (scope.get("client") or ("", 0))[0]
         SENDER.set(("", address))
-        route = "(none)"
         try:
             path = path_below(self.settings.root_path, scope["path"], scope.get("query_string", b""))
             exchange.path = path
-            route = route_of(path)
             heard = [pair for pair in scope["headers"] if pair[0] not in _NOT_HEARD or on_a_space()]
             heard = [pair for pair in heard if pair[0] != b"range" or b"," not in pair[1]]  # Gradio knows one part
             scope = {**scope, "path": path, "raw_path": path.encode(), "headers": heard}
-            await self._pass(exchange, scope, receive, route)
+            await self._pass(exchange, scope, receive)
         except ClientDisconnect:  # in the middle of a body: there is nobody to answer
             pass
         except Exception as error:
-            await exchange.refuse(self._refusal_of(error, exchange.reference))
+            await exchange.refuse(self._refusal_of(error, exchange))
         finally:
-            self._note(exchange, route)
+            self._note(exchange, scope)
 
-    async def _pass(self, exchange: Exchange, scope: Scope, receive: Receive, route: str) -> None:
+    async def _pass(self, exchange: Exchange, scope: Scope, receive: Receive) -> None:
         """Lets a request through to the page, if it is let in."""
         self._check_head(scope, exchange.headers)
         visitor = await self._visitor(scope, exchange)
@@ -154,46 +116,51 @@ class Guard:
             scope["path"] == "/" or scope["path"].startswith("/study/")
         ) and VISITOR_COOKIE.encode() not in exchange.headers.get(b"cookie", b""):
             exchange.cookie = self._visitor_cookie(scope)
-        if scope["method"] == "POST" and route in _CALLS:
-            exchange.heard = self._binds(visitor.person)
         scope["state"] = {**scope.get("state", {}), "visitor": visitor, "reference": exchange.reference}
         PERSON.set(visitor.person)
         SENDER.set((visitor.account or visitor.person, SENDER.get()[1]))
-        self.answers.count += route in _ANSWERS
+        answers = f"{scope['path']}/".startswith(_ANSWERS)
+        self.lab.sending += answers
         try:
             await self.app(scope, exchange.body or receive, exchange.answer)
-        except Exception:
+        except Exception as error:
             if exchange.body is None or exchange.body.refused is None:
+                if is_upload(exchange.path) and isinstance(error, _BY_A_BAD_FORM):
+                    raise Refused(400, BAD_UPLOAD, "bad body") from error
                 raise
         finally:
-            self.answers.count -= route in _ANSWERS
+            self.lab.sending -= answers
         await exchange.finish()
 
-    def _refusal_of(self, error: Exception, reference: str) -> Refused:
+    def _refusal_of(self, error: Exception, exchange: Exchange) -> Refused:
         """The response to an error, which is counted, and logged if it is internal."""
+        if isinstance(error, InputError):
+            error = Refused(404 if exchange.scope["method"] == "GET" else 422, str(error), "input")
         if isinstance(error, Refused):
             self.figures.refused.labels(error.reason).inc()
             return error
-        if (isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)) or is_full(error):
+        if is_full(error):
             self.figures.refused.labels("disk").inc()
-            return Refused(507, _DISK, "disk")
+            return Refused(507, DISK_FULL, "disk")
         self.figures.errors.labels(type(error).__name__).inc()
         log.error("A request failed.", exc_info=error)
         if isinstance(error, SQLAlchemyError):
-            return Refused(503, _DATABASE, "database")
-        sentence = f"Something went wrong inside the program; its log says more under {reference}."
+            return Refused(503, BROKEN, "database")
+        sentence = f"Something went wrong inside the program; its log says more under {exchange.reference}."
         return Refused(500, sentence, "")
 
-    def _note(self, exchange: Exchange, route: str) -> None:
-        """Counts and logs an exchange."""
+    def _note(self, exchange: Exchange, scope: Scope) -> None:
+        """Counts and logs an exchange, by the pattern of its route: a path can hold the key of a run or of a file."""
+        page = exchange.path if exchange.path in PATHS else "(none)"  # also where it comes from the cache
+        route = getattr(scope.get("route"), "path", "") or page
         method = exchange.scope["method"]
         method = method if method in (*_CHANGING, "GET", "HEAD", "OPTIONS") else "other"
         status = exchange.status or 499
         self.figures.requests.labels(route, method, str(status)).inc()
         self.figures.answer_seconds.labels(route).observe(exchange.first_byte)
-        # Neither the query nor the whole path: both can hold the key of a run or of a file.
+        often = exchange.path.startswith(LIVE)  # some fifteen a second
         log.log(
-            logging.DEBUG if route == MESSAGE else logging.INFO,  # a live stream sends some fifteen a second
+            logging.DEBUG if often else logging.INFO,
             "request",
             extra={
                 "method": method,
@@ -236,15 +203,9 @@ class Guard:
         if path in _WATCHED:  # they answer while everything else waits
             return nobody
         try:
-            find = partial(
-                self.visitors.of,
-                read_cookies(headers),
-                address,
-                reference=exchange.reference,
-                base=base,
-                by_proxy=person_by_proxy(self.settings, scope),
-            )  # which looks into the database where people have accounts
-            visitor = await run_in_threadpool(find) if self.settings.accounts else find()
+            find = partial(find_visitor, self.settings, self.lab.accounts, scope, nobody)
+            # It looks into the database where people have accounts.
+            visitor = await run_in_threadpool(find) if self.settings.sign_in else find()
         except (Refused, SQLAlchemyError) as error:
             if not (isinstance(error, Refused) and error.reason == "proxy" and needs_no_sign_in(path)):
                 raise
@@ -265,15 +226,8 @@ class Guard:
             address.take(visitor.address, weight)
 
     def _visitor_cookie(self, scope: Scope) -> str:
-        response = Response()
-        set_cookie(
-            response,
-            VISITOR_COOKIE,
-            new_token(),
-            seconds=365 * 86400,
-            root=self.settings.root_path,
-            secure=scope["scheme"] == "https",
-        )
+        response, root, secure = Response(), self.settings.root_path, scope["scheme"] == "https"
+        set_cookie(response, VISITOR_COOKIE, new_token(), seconds=YEAR, root=root, secure=secure)
         return response.headers["set-cookie"]
 
     # ---- the body --------------------------------------------------------------------------------
@@ -299,28 +253,21 @@ class Guard:
         most = self._most(path)
         if declared > most:
             raise too_large(most)
-        form = None
         if is_upload(path):
             size = declared if b"content-length" in headers else most
-            self._check_disk(size)
             await self._make_room(visitor, size)
-            form = UploadForm(headers.get(b"content-type", b""))
-        body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds, form=form)
-        if form is None and path.startswith(API):
+        body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds)
+        if not is_upload(path) and path.startswith(API):
             self._check_call(await body.whole(), visitor.person, path)
         return body
 
     async def _make_room(self, visitor: Visitor, size: float) -> None:
-        """Makes room for an upload among the visitor's own files."""
+        """Makes room for an upload on the disk and among the visitor's own files."""
         try:
-            await run_in_threadpool(self.admit, visitor, size)
+            await run_in_threadpool(self.lab.storage.check_disk, size)
+            await run_in_threadpool(self.lab.storage.admit, visitor, size)
         except InputError as error:
             raise Refused(507, str(error), "room") from None
-
-    def _check_disk(self, size: float) -> None:
-        free = self.settings.free_megabytes * 2**20
-        if free and shutil.disk_usage(self.settings.data).free < free + size:
-            raise Refused(507, _DISK, "disk")
 
     def _endpoint(self, path: str) -> int | None:
         """The function that a path names; None if it names none."""
@@ -365,18 +312,6 @@ class Guard:
             self.bindings.check(session, person)
         if way == "call":
             self.bindings.check("/".join(names[1:]).rstrip("/"), person, known=True)
-
-    def _binds(self, person: str) -> Callable[[bytes], None]:
-        """Returns a listener that ties the answer to a call to the person who made it."""
-
-        def hear(answer: bytes) -> None:
-            try:
-                event = json.loads(answer)["event_id"]
-            except (ValueError, KeyError, TypeError):
-                return
-            self.bindings.check(event, person, begin=True)
-
-        return hear
 
 
 def may_read_figures(settings: Settings, address: str, authorization: str) -> bool:

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 import logging
-import queue
-import resource
-import shutil
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import Future
-from pathlib import Path
+from resource import RUSAGE_SELF, getrusage
 from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
@@ -31,24 +25,10 @@ Report = tuple[bool, dict[str, Any]]
 
 PAUSE = 30.0
 """Seconds between two tries after one that failed."""
-PATIENCE = 0.2
-"""Seconds after which the answer holds what the last look found, while the next one goes on."""
-STALE = 30.0
-"""Seconds for which a look is good enough for that."""
-
-
-def check_disk(folder: Path, least: float) -> None:
-    """Raises if a folder's disk has fewer than ``least`` bytes left, or nothing can be written in the folder.
-
-    Raises:
-        InputError: if there is too little space.
-        OSError: if nothing can be written.
-    """
-    if shutil.disk_usage(folder).free < least:
-        raise InputError(f"Less than {least / 2**20:g} MB of disk space are left.")
-    with tempfile.TemporaryFile(dir=folder) as file:
-        file.write(b"0" * 4096)
-        file.flush()
+EVERY = 5.0
+"""Seconds between two looks."""
+LATE = 60.0
+"""Seconds after which a look that does not come is a failure."""
 
 
 class Health:
@@ -77,11 +57,8 @@ class Health:
         self.error = ""
         self._works = False
         self._tried_at = -PAUSE
-        self._asked: queue.SimpleQueue[Future[None]] = queue.SimpleQueue()
-        self._looking: Future[None] | None = None
-        self._looker: threading.Thread | None = None
         self._found: dict[str, str] = {}
-        self._found_at = -STALE
+        self._found_at = time.monotonic()
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
 
@@ -105,34 +82,22 @@ class Health:
         self._works = False
         self.error = f"a run ended in {type(error).__name__}"
 
-    async def look(self) -> Report:
-        """Whether all is well, and the state of each part.
-
-        A thread of its own looks, so that it waits for nothing that other threads wait for. It stays, since the start
-        of a thread waits until that has had its first turn. Whoever asks meanwhile waits for the same look; and where
-        it takes long, since other threads compute, they get what the last one found.
-        """
-        if self._looking is None or self._looking.done():
-            self._looking = Future()
-            self._asked.put(self._looking)
-        if self._looker is None:
-            self._looker = threading.Thread(target=self._look, name="look", daemon=True)
-            self._looker.start()
-        recent = time.monotonic() - self._found_at < STALE
-        await asyncio.wait([asyncio.wrap_future(self._looking)], timeout=PATIENCE if recent else None)
-        return self.report()
+    def keep_looking(self) -> None:
+        """Looks every few seconds, in a thread of its own, so that nobody who asks waits for anything."""
+        threading.Thread(target=self._look, name="look", daemon=True).start()
 
     def _look(self) -> None:
-        while True:
-            looking = self._asked.get()
+        while not self.stopping:
             self.probe()
             self._found = {name: _state_of(check) for name, check in self.wants.items()}
             self._found_at = time.monotonic()
-            looking.set_result(None)
+            time.sleep(EVERY)
 
     def report(self) -> Report:
         """What the last look has found, and how runs are."""
         checks = dict(self._found)
+        if (late := time.monotonic() - self._found_at) > LATE:
+            checks["looks"] = f"failed: nothing was looked at for {late:.0f} s"
         checks["generation"] = "ok" if self._works else f"failed: {self.error}" if self.error else "loading"
         checks["progress"] = f"failed: {stuck}" if (stuck := self.stuck()) else "ok"
         whole = self.ready and all(state == "ok" for state in checks.values())
@@ -207,27 +172,12 @@ class Figures:
         )
         self.errors = Counter("pasdedeux_errors", "Errors that are not the user's", ["kind"], registry=registry)
         self.refused = Counter("pasdedeux_refused", "Requests refused", ["reason"], registry=registry)
-        self._waiting = Gauge("pasdedeux_queue_waiting", "Runs that wait", registry=registry)
-        self._running = Gauge("pasdedeux_queue_running", "Runs that run", registry=registry)
-        self._live = Gauge("pasdedeux_live_streams", "Live streams", registry=registry)
-        self._ready = Gauge("pasdedeux_ready", "1 where a tiny generation works", registry=registry)
-        self._memory = Gauge("pasdedeux_memory_peak_bytes", "Most memory so far", registry=registry)
         unit = 1 if sys.platform == "darwin" else 1024
-        self._memory.set_function(lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
+        self.watch("memory_peak_bytes", "Most memory so far", lambda: getrusage(RUSAGE_SELF).ru_maxrss * unit)
 
-    def watch(
-        self,
-        *,
-        waiting: Callable[[], int],
-        running: Callable[[], int],
-        ready: Callable[[], bool],
-        live: Callable[[], int],
-    ) -> None:
-        """Takes the gauges' values from these whenever the figures are read."""
-        self._waiting.set_function(waiting)
-        self._running.set_function(running)
-        self._ready.set_function(ready)
-        self._live.set_function(live)
+    def watch(self, name: str, documentation: str, value: Callable[[], float]) -> None:
+        """Adds a gauge whose value is taken whenever the figures are read."""
+        Gauge(f"pasdedeux_{name}", documentation, registry=self.registry).set_function(value)
 
     def text(self) -> bytes:
         """All figures in Prometheus' text format."""

@@ -25,6 +25,11 @@ _LEVEL = 5
 """Of packing: a third of the time of the highest, which saves two per cent."""
 
 
+@lru_cache(KEPT)
+def _packed(body: bytes) -> bytes:
+    return gzip.compress(body, _LEVEL)
+
+
 class PageCache:
     """An ASGI middleware that answers GET of :data:`PATHS` from memory, compressed; it runs inside the access checks.
 
@@ -40,7 +45,6 @@ class PageCache:
         self.app = app
         self._made: dict[tuple[str, str], Response] = {}
         self._making = asyncio.Lock()
-        self._packed = lru_cache(KEPT)(lambda path, scheme, host: gzip.compress(self._body(path, scheme, host), _LEVEL))
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answers a request for the page; passes every other one on."""
@@ -55,17 +59,12 @@ class PageCache:
         answer, host = Response(status_code=made.status_code), sent.get(b"host", b"")
         answer.raw_headers = [pair for pair in made.raw_headers if pair[0] != b"content-length"]
         answer.headers["vary"] = "Accept-Encoding"
-        if b"gzip" in sent.get(b"accept-encoding", b"") and key in self._made:
-            answer.body = self._packed(*key, host)
+        answer.body = bytes(made.body).replace(_ANY, host)
+        if b"gzip" in sent.get(b"accept-encoding", b""):
+            answer.body = _packed(answer.body)
             answer.headers["content-encoding"] = "gzip"
-        else:
-            answer.body = bytes(made.body).replace(_ANY, host)
         answer.headers["content-length"] = str(len(answer.body))
         await answer(scope, receive, send)
-
-    def _body(self, path: str, scheme: str, host: bytes) -> bytes:
-        """An answer under the name by which it is asked."""
-        return bytes(self._made[path, scheme].body).replace(_ANY, host)
 
     async def _make(self, scope: Scope, receive: Receive) -> Response:
         """The application's own answer."""

@@ -7,7 +7,7 @@ component takes is declared beside it, see :mod:`webdemo.ui.components.accepts`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
 from typing import Any
 
 import gradio as gr
@@ -52,11 +52,10 @@ class Payloads:
             endpoint: the function that its address names, if it does.
             person: who sends it; files must be theirs.
         """
-        for text in _texts(fields):
-            try:
-                text.encode()
-            except UnicodeEncodeError:
-                raise Refused(400, "The text contains an incomplete character: write it again.", "bad body") from None
+        try:
+            json.dumps(fields, ensure_ascii=False).encode()
+        except (UnicodeEncodeError, RecursionError):
+            raise Refused(400, "The text contains an incomplete character: write it again.", "bad body") from None
         function = fields.get("fn_index")
         if function is None:
             function = endpoint
@@ -107,15 +106,3 @@ def _validated(value: Any, declared: TypeAdapter[Any], component: Any) -> Any:
         if isinstance(component, gr.File | gr.UploadButton):
             sentence = _FOREIGN
         raise Refused(400, sentence, "forged") from None
-
-
-def _texts(value: Any) -> Iterator[str]:
-    waiting = [value]
-    while waiting:
-        match waiting.pop():
-            case str() as text:
-                yield text
-            case dict() as fields:
-                waiting += [*fields, *fields.values()]
-            case list() as items:
-                waiting += items

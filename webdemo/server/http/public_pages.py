@@ -10,9 +10,8 @@ from urllib.parse import quote
 from fastapi import APIRouter, Request
 from starlette.responses import FileResponse, HTMLResponse, Response
 
-from motion import InputError
 from webdemo.server.settings import Settings
-from webdemo.server.store.publishing import Publishing
+from webdemo.server.store.sharing import Sharing
 from webdemo.ui.history import Entry
 from webdemo.ui.public_html import FILES, Place, embed_html, payload_of, player_html
 from webdemo.ui.visitor import visitor_of
@@ -25,18 +24,15 @@ _FILE_HEADERS = {"Cache-Control": "public, max-age=600", "Access-Control-Allow-O
 _NOTHING = "There is nothing here."
 
 
-def public_routes(settings: Settings, publishing: Publishing) -> APIRouter:
+def public_routes(settings: Settings, history: Sharing) -> APIRouter:
     """The routes of public pages."""
     router = APIRouter()
     files = f"{settings.root_path}/shown/"
 
     def read(key: str) -> tuple[Entry, Payload, float]:
-        """The run that a page shows, its motion, and when the page ends; raises Refused where it shows nothing."""
-        try:
-            opened, until = publishing.open(key)
-            return opened.entry, payload_of(opened), until
-        except InputError as error:
-            raise Refused(404, str(error), "public") from None
+        """The run that a page shows, its motion, and when the page ends."""
+        opened, until = history.open_page(key)
+        return opened.entry, payload_of(opened), until
 
     @router.get("/share/{key}")
     def share(key: str, request: Request) -> Response:

@@ -1,4 +1,4 @@
-"""The paths of the server: their names in metrics, and those that no request may name; and the refusal of a request."""
+"""The paths of the server: what each is, and those that no request may name; and the refusal of a request."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ _SHOWN = "/shown/"
 API = "/gradio_api/"
 LIVE = "/live/"
 """Path of the messages of live streams."""
-MESSAGE = f"{LIVE}ID"
-"""Their label in metrics and log."""
 
 _CLOSED = re.compile(
     r"/(monitoring|docs|redoc|openapi\.json|gradio_api/(openapi\.json|proxy=|vibe|undo-vibe|run-history|runs|deep_link|dev/"
@@ -22,44 +20,6 @@ _CLOSED = re.compile(
 )
 """Gradio's routes that this page does not use: proxies, code editing, monitoring, other hosts' files."""
 _LONGEST_URL = 4096
-_ROUTES = frozenset(
-    f"/{name}"
-    for name in (
-        "admin",
-        "login",
-        "logout",
-        "study",
-        "share",
-        "embed",
-        "shown",
-        "healthz",
-        "live",
-        "metrics",
-        "config",
-        "theme.css",
-        "static",
-        "assets",
-        "favicon.ico",
-    )
-)
-_API_ROUTES = frozenset(
-    (
-        "queue",
-        "upload",
-        "upload_progress",
-        "file",
-        "call",
-        "run",
-        "api",
-        "info",
-        "heartbeat",
-        "cancel",
-        "reset",
-        "component_server",
-        "startup-events",
-        "app_id",
-    )
-)
 _NOTHING = "There is nothing here."
 
 
@@ -94,19 +54,6 @@ def needs_no_sign_in(path: str) -> bool:
 def is_upload(path: str) -> bool:
     """True for the paths that take files."""
     return path.startswith(f"{API}upload")
-
-
-def route_of(path: str) -> str:
-    """Label of a path in metrics and log: its first word if that is known, never a key or a name."""
-    if path.startswith(API):
-        word, _, rest = path[len(API) :].replace("=", "/").partition("/")
-        if word == "queue" and rest in ("join", "data"):
-            return f"{API}queue/{rest}"
-        return f"{API}{word}" if word in _API_ROUTES else "(other)"
-    if path.startswith(LIVE):
-        return MESSAGE
-    first = "/" + path[1:].partition("/")[0]
-    return first if path == "/" or first in _ROUTES else "(other)"
 
 
 # ---- refusals ------------------------------------------------------------------------------------

@@ -13,7 +13,6 @@ import gradio as gr
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
-from motion import InputError
 from webdemo.server.http.error_pages import never_kept
 from webdemo.server.settings import Settings
 from webdemo.server.store.studies import Studies
@@ -38,10 +37,7 @@ def study_routes(settings: Settings, studies: Studies) -> APIRouter:
 
     @router.get("/study/{key}")
     def page(key: str) -> Response:
-        try:
-            return never_kept(_page(root, key, studies.question(key)))
-        except InputError as error:
-            raise Refused(404, str(error), "study") from None
+        return never_kept(_page(root, key, studies.question(key)))
 
     @router.post("/study/{key}/next")
     def following(key: str, request: Request) -> Response:
@@ -66,12 +62,9 @@ def _voter(request: Request) -> str:
 
 def _following(studies: Studies, key: str, person: str, vote: tuple[int, str] | None = None) -> Response:
     """Takes a vote, if there is one; answers with the next pair and how far the person is."""
-    try:
-        if vote is not None:
-            studies.vote(key, person, *vote)
-        done, total, number, pair = studies.following(key, person)
-    except InputError as error:
-        raise Refused(422, str(error), "study") from None
+    if vote is not None:
+        studies.vote(key, person, *vote)
+    done, total, number, pair = studies.following(key, person)
     answer = {"done": done, "total": total, "number": number, "pair": pair and pair_payload(pair)}
     return JSONResponse(answer, headers={"Cache-Control": "no-store"})
 

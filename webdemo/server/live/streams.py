@@ -23,6 +23,7 @@ from starlette.responses import JSONResponse, Response
 from motion import FPS, SMPL22, Clip, InputError
 from webdemo.inference.requests.live import PARTNERS, LivePartner
 from webdemo.server.accounts.quotas import OverQuota, Quota
+from webdemo.server.http.routes import Refused
 from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
 
@@ -41,20 +42,9 @@ OTHER_TAB = "Another live stream of yours has begun, so this one ended: press St
 TOO_LONG = f"A live stream lasts {LONGEST / 60:.0f} minutes at most: press Start to go on."
 SILENT = f"Nothing came for {IDLE:.0f} seconds, so the live stream was closed: press Start to go on."
 REPLACED = "A newer message of this live stream took this one's place: send one after the other."
+OFF = "Live streams are switched off on this server: film a video and press React."
 STOPPING = "The server is stopping: press Start again in a minute."
 UNKNOWN = "The server does not know this live stream any more: press Start to go on."
-
-
-class StreamRefused(InputError):
-    """There is no room for another live stream."""
-
-
-class StreamUnknown(InputError):
-    """There is no such live stream: it is another person's, or the server was started anew."""
-
-
-class Replaced(InputError):
-    """A newer message of the same stream took the place of one that waited."""
 
 
 class Partners(Protocol):
@@ -101,7 +91,7 @@ class Streams:
         """A new stream; the networks may have to be loaded first.
 
         Raises:
-            StreamRefused: if there are too many.
+            Refused: if there are too many.
             InputError: for a partner that is not known.
         """
         if partner not in PARTNERS:
@@ -121,11 +111,11 @@ class Streams:
         return stream
 
     def _admit(self, visitor: Visitor) -> None:
-        """Ends the person's other stream; raises StreamRefused if there is no room for a new one."""
+        """Ends the person's other stream; raises Refused if there is no room for a new one."""
         if self._stopping:
-            raise StreamRefused(STOPPING)
+            raise Refused(503, STOPPING, "live")
         if not self.quota.everybody:
-            raise StreamRefused("Live streams are switched off on this server: film a video and press React.")
+            raise Refused(503, OFF, "live")
         for stream in [stream for stream in self._open.values() if stream.person == visitor.person]:
             self._end(stream, OTHER_TAB)
         held = [(stream.person, stream.address) for stream in self._open.values()]
@@ -133,21 +123,21 @@ class Streams:
         try:
             self.quota.check(visitor.person, visitor.address, held)
         except OverQuota as over:
-            raise StreamRefused(str(over)) from None
+            raise Refused(503, str(over), "live") from None
 
     def find(self, key: str, visitor: Visitor) -> LiveStream:
         """A person's stream.
 
         Raises:
             StreamEnded: if it has ended.
-            StreamUnknown: if there is none of this id, or it is another person's.
+            Refused: if there is none of this id, or it is another person's.
         """
         self.sweep()
         with self._lock:
             stream = self._open.get(key)
             if stream is None or stream.person != visitor.person:
                 reason = self._ended.get(key)
-                raise StreamUnknown(UNKNOWN) if reason is None else StreamEnded(reason)
+                raise Refused(404, UNKNOWN, "live") if reason is None else StreamEnded(reason)
         return stream
 
     async def opened(self, job: Callable[[], Answer]) -> Answer:
@@ -158,14 +148,16 @@ class Streams:
         """The answer of a person's stream to a message.
 
         Raises:
-            InputError: as :meth:`find`; :class:`Replaced`; StreamEnded; and for a message that cannot be read.
+            StreamEnded: if it has ended.
+            Refused: as :meth:`find`, and for a message whose place a newer one has taken.
+            InputError: for a message that cannot be read.
         """
         stream = self.find(key, visitor)
         stream.heard = self.clock()
         stream.newest = mine = object()
         async with stream.one:
             if stream.newest is not mine:
-                raise Replaced(REPLACED)
+                raise Refused(409, REPLACED, "live")
             steps, answer = _steps(stream, body), None
             while answer is None:
                 answer = await self._in_turn(self._computing, partial(next, steps))
@@ -242,21 +234,12 @@ def live_routes(streams: Streams) -> APIRouter:
 
 
 async def _answered(job: Awaitable[dict[str, Any]]) -> Response:
-    """The answer to a message, once it is there; errors are sentences."""
-    status, answer = 200, {}
+    """The answer to a message, once it is there."""
     try:
         answer = await job
-    except StreamRefused as error:
-        status, answer = 503, {"detail": str(error)}
-    except StreamUnknown as error:
-        status, answer = 404, {"detail": str(error)}
     except StreamEnded as error:
         answer = {"ended": str(error)}
-    except Replaced as error:
-        status, answer = 409, {"detail": str(error)}
-    except InputError as error:
-        status, answer = 422, {"detail": str(error)}
-    return JSONResponse(answer, status_code=status, headers={"Cache-Control": "no-store"})
+    return JSONResponse(answer, headers={"Cache-Control": "no-store"})
 
 
 def _begin(streams: Streams, visitor: Visitor, body: bytes) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from fastapi import HTTPException, Request
 from gradio.queueing import Event, EventQueue, Queue
 
 from webdemo.server.accounts.quotas import OverQuota, Quota
+from webdemo.server.accounts.visitors import Bindings
 from webdemo.server.http.health import Figures
 from webdemo.ui.components.reading import READING_EVENTS
 from webdemo.ui.visitor import visitor_of
@@ -38,12 +39,13 @@ class FairEvents(Queue):
     Args:
         quota: of unfinished events.
         figures: metrics to update.
+        bindings: learns whose event each one is.
         options: of Gradio's queue.
     """
 
-    def __init__(self, *, quota: Quota, figures: Figures, **options: Any) -> None:
+    def __init__(self, *, quota: Quota, figures: Figures, bindings: Bindings, **options: Any) -> None:
         super().__init__(**options, max_size=None)
-        self.quota, self.figures = quota, figures
+        self.quota, self.figures, self.bindings = quota, figures, bindings
         self.accounts = Accounts()
         self._begun: dict[Event, float] = {}
         self._rests: dict[str, float] = {}
@@ -63,7 +65,10 @@ class FairEvents(Queue):
             self.figures.refused.labels(f"events of {over.whose}").inc()
             raise HTTPException(503 if over.whose == "everybody" else 429, str(over)) from None
         self.accounts.meet(who.person, {other.person for other in known})
-        return await super().push(body, request, username)
+        taken, event, state = await super().push(body, request, username)
+        if taken:
+            self.bindings.check(event, who.person, begin=True)
+        return taken, event, state
 
     def get_events(self) -> tuple[list[Event], bool, str] | None:
         """The next event: of those that may begin, the first one of the person served least."""

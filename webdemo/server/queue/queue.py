@@ -20,7 +20,7 @@ from webdemo.server.http.health import Figures
 from webdemo.ui.runs import EngineLike, Waiting
 from webdemo.ui.visitor import Visitor, visitor
 
-from .turns import Accounts, Job, Pace, QueueLimits, in_turn, next_job, units
+from .turns import Accounts, Job, Pace, in_turn, next_job, units
 
 TICK = 0.5
 """Seconds between two updates of the place in the queue."""
@@ -33,8 +33,10 @@ class FairQueue:
 
     Args:
         engine: runs the requests.
-        limits: of what runs.
         quota: of waiting runs.
+        running: most running runs of a person.
+        workers: runs of a model at a time.
+        seconds: that one run may take; 0 for any.
         figures: metrics to update.
         broken: called with errors of the program, not those of the user.
     """
@@ -42,14 +44,17 @@ class FairQueue:
     def __init__(
         self,
         engine: EngineLike,
-        limits: QueueLimits | None = None,
         quota: Quota | None = None,
         *,
+        running: int = 2,
+        workers: int = 1,
+        seconds: float = 0.0,
         figures: Figures | None = None,
         broken: Callable[[BaseException], None] = lambda error: None,
     ) -> None:
         self.engine = engine
-        self.limits, self.quota = limits or QueueLimits(), quota or Quota("runs waiting", person=4)
+        self.quota = quota or Quota("runs waiting", person=4)
+        self.most_running, self.workers, self.seconds = running, workers, seconds
         self.figures = figures or Figures()
         self.broken = broken
         self.paces: defaultdict[str, Pace] = defaultdict(Pace)
@@ -144,7 +149,7 @@ class FairQueue:
     # ---- the queue -------------------------------------------------------------------------------
 
     def _enter(self, session: str, request: Any, who: Visitor) -> Job:
-        token, person = CancelToken(self.limits.seconds), who.person
+        token, person = CancelToken(self.seconds), who.person
         job = Job(person, request, group="", cost=units(request), address=who.address, token=token)
         with self._change:
             if self._stopping:
@@ -172,7 +177,7 @@ class FairQueue:
             name = min(self._workers)
         if name not in self._workers:
             self._workers.add(name)
-            for _ in range(self.limits.workers):
+            for _ in range(self.workers):
                 threading.Thread(target=self._work, args=(name,), name=f"worker {name}", daemon=True).start()
         return name
 
@@ -206,7 +211,7 @@ class FairQueue:
         before = list(takewhile(lambda other: other is not job, in_turn(mine, self._accounts.served)))
         running = [other for other in self._running if other.group == job.group]
         ahead = sum(other.cost for other in before)
-        return len(before) + 1, self.paces[job.group].wait(ahead, running, self.limits.workers)
+        return len(before) + 1, self.paces[job.group].wait(ahead, running, self.workers)
 
     # ---- the workers -----------------------------------------------------------------------------
 
@@ -236,7 +241,7 @@ class FairQueue:
     def _next(self, group: str) -> Job | None:
         self._waiting = [job for job in self._waiting if not job.token.cancelled]
         mine = [job for job in self._waiting if job.group == group]
-        return next_job(mine, self._accounts.served, self._running, self.limits.running)
+        return next_job(mine, self._accounts.served, self._running, self.most_running)
 
     def _run(self, job: Job) -> bool:
         """Runs a job; returns whether it finished, so that its duration can be used to learn the pace."""

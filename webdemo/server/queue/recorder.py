@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -16,8 +15,6 @@ from webdemo.server.store.history import History
 from webdemo.ui.visitor import visitor
 
 from .queue import FairQueue
-
-log = logging.getLogger(__name__)
 
 
 class Recorder:
@@ -81,11 +78,6 @@ class Recorder:
             self.history.finish(run, result)
         except InputError as error:
             return replace(result, run="", notes=(*result.notes, str(error)))
-        except Exception:  # whatever it is, the result itself is there
-            log.exception("A result could not be kept.")
-            self.history.end(run, "failed", "The result could not be kept in the history.")
-            sentence = "The result could not be kept in the history: download its files now."
-            return replace(result, run="", notes=(*result.notes, sentence))
         return result
 
     def _count(self, result: Result) -> None:

@@ -20,15 +20,6 @@ MAX_ACCOUNTS = 1000
 """Above this number, accounts of people without runs are dropped."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class QueueLimits:
-    """Limits of a person's running runs, of concurrent runs of a model, and of the seconds of one run (0: none)."""
-
-    running: int = 2
-    workers: int = 1
-    seconds: float = 0.0
-
-
 @dataclass(eq=False)
 class Job:
     """One run in the queue.

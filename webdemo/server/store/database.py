@@ -1,7 +1,8 @@
-"""The tables, in one SQLite file: runs, what is written on them, links to them, studies, people and sign-ins."""
+"""The tables, in one SQLite file: runs, what shows them to others, studies, accounts and sign-ins."""
 
 from __future__ import annotations
 
+import errno
 import json
 import logging
 import time
@@ -19,8 +20,10 @@ from webdemo.ui.history import Entry
 
 log = logging.getLogger(__name__)
 
-SCHEMA = 1
+SCHEMA = 2
 """Number of the tables' schema, which the file keeps (``PRAGMA user_version``); a change of a table changes it."""
+DISK_FULL = "The server's disk is full, so nothing more can be kept: tell the person who runs it."
+BROKEN = "The server's history cannot be read or written: tell the person who runs it."
 BUSY_SECONDS = 15
 """Time that SQLite waits for another writer."""
 SOUND_SECONDS = 30.0
@@ -32,11 +35,12 @@ class Table(DeclarativeBase):
 
 
 class Run(Table):
-    """One run, from its request on.
+    """One run, from its request on, with what its owner wrote about it.
 
     Attributes:
         id: unguessable; names its folder of motion files.
         owner: whose history it is in.
+        title: its prompt, or what it is a reaction to.
         state: "running" (or waiting), "done", "failed", "cancelled", "interrupted".
         request: as JSON, without motion.
         outcome: manifest, timings and notes as JSON; empty until done.
@@ -44,6 +48,14 @@ class Run(Table):
         created: when it was asked for, by which it grows old.
         size: bytes of its files and of what is written about it.
         address: a hash of the address that it came from; empty where people are known by more than a cookie.
+        name: that the owner gave it; empty for its title.
+        tags: separated, begun and ended by a space.
+        note: the owner's words.
+        frame: the frame that ``note`` is about.
+        thumbnail: of its motion.
+        kept: how its tab was set, as JSON.
+        part_of: the run whose grid or comparison this one is a part of; it has no card of its own then.
+        removed: when the owner took it out of the history; it is deleted a while later.
     """
 
     __tablename__ = "runs"
@@ -60,96 +72,70 @@ class Run(Table):
     size: Mapped[int] = mapped_column(default=0)
     address: Mapped[str] = mapped_column(default="", index=True)
     favourite: Mapped[bool] = mapped_column(default=False)
-    links: Mapped[list[Link]] = relationship(back_populates="run", cascade="all, delete-orphan")
-    note: Mapped[Note | None] = relationship(back_populates="run", cascade="all, delete-orphan")
-
-
-class Note(Table):
-    """The owner's words on a run, and how its tab was set.
-
-    Attributes:
-        title: the name that the owner gave it; empty for that of the run.
-        tags: separated, begun and ended by a space.
-        frame: the frame that ``text`` is about.
-        thumbnail: of its motion.
-        kept: how its tab was set, as JSON.
-        part_of: the run whose grid or comparison this one is a part of; it has no card of its own then.
-        removed: when the owner took it out of the history; it is deleted a while later.
-    """
-
-    __tablename__ = "notes"
-
-    run_id: Mapped[str] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True)
-    title: Mapped[str] = mapped_column(Text, default="")
+    name: Mapped[str] = mapped_column(Text, default="")
     tags: Mapped[str] = mapped_column(Text, default="")
-    text: Mapped[str] = mapped_column(Text, default="")
+    note: Mapped[str] = mapped_column(Text, default="")
     frame: Mapped[int | None] = mapped_column(default=None)
     thumbnail: Mapped[str] = mapped_column(Text, default="")
     kept: Mapped[str] = mapped_column(Text, default="")
     part_of: Mapped[str] = mapped_column(default="", index=True)
     removed: Mapped[float | None] = mapped_column(default=None, index=True)
-    run: Mapped[Run] = relationship(back_populates="note")
+    shares: Mapped[list[Share]] = relationship(
+        back_populates="run", cascade="all, delete-orphan", passive_deletes=True, lazy="selectin"
+    )
 
 
-class Link(Table):
-    """A link that opens a run for anybody, until it expires or is revoked."""
-
-    __tablename__ = "links"
-
-    token: Mapped[str] = mapped_column(primary_key=True)
-    run_id: Mapped[str] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"), index=True)
-    until: Mapped[float]
-    run: Mapped[Run] = relationship(back_populates="links")
-
-
-class Published(Table):
-    """A page that shows a run to anybody, until it expires or is revoked.
+class Share(Table):
+    """What shows a run to others until it ends: a link, to the people of the lab, or a public page, to anybody.
 
     Attributes:
-        key: unguessable; the page's address.
-        owner: whose run it is.
+        key: unguessable; the end of its address.
         until: when it ends.
     """
 
-    __tablename__ = "published"
+    __tablename__ = "shares"
 
     key: Mapped[str] = mapped_column(primary_key=True)
-    owner: Mapped[str] = mapped_column(index=True)
     run_id: Mapped[str] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"), index=True)
+    public: Mapped[bool]
     created: Mapped[float] = mapped_column(default=time.time)
     until: Mapped[float]
-    run: Mapped[Run] = relationship()
+    run: Mapped[Run] = relationship(back_populates="shares")
 
 
-class SignIn(Table):
-    """A session of a signed-in person, known by the hash of its cookie.
-
-    Attributes:
-        entry: fingerprint of the password at sign-in; a changed password invalidates the session.
-    """
-
-    __tablename__ = "sessions"
-
-    digest: Mapped[str] = mapped_column(primary_key=True)
-    person: Mapped[str] = mapped_column(index=True)
-    entry: Mapped[str]
-    until: Mapped[float]
-
-
-class Person(Table):
-    """An account's role; a person without a row has the ordinary one.
+class Account(Table):
+    """A person with a password, or one whom a proxy has named.
 
     Attributes:
-        key: of the account, or the name that a proxy gives.
+        name: by which they sign in.
+        key: the name and an id, to which everything of theirs belongs: nobody inherits from an earlier account.
+        password: cost, salt and hash; empty for a person who signs in at the proxy alone.
         role: "admin" or empty.
         suspended: cannot sign in.
     """
 
-    __tablename__ = "people"
+    __tablename__ = "accounts"
 
-    key: Mapped[str] = mapped_column(primary_key=True)
+    name: Mapped[str] = mapped_column(primary_key=True)
+    key: Mapped[str] = mapped_column(unique=True)
+    password: Mapped[str] = mapped_column(default="")
     role: Mapped[str] = mapped_column(default="")
     suspended: Mapped[bool] = mapped_column(default=False)
+
+    @property
+    def owner(self) -> str:
+        """The owner of the person's runs and files."""
+        return f"user {self.key}"
+
+
+class SignIn(Table):
+    """A session of a signed-in person, known by the hash of its cookie."""
+
+    __tablename__ = "sessions"
+
+    digest: Mapped[str] = mapped_column(primary_key=True)
+    person: Mapped[str] = mapped_column(ForeignKey("accounts.name", ondelete="CASCADE"), index=True)
+    until: Mapped[float]
 
 
 class Study(Table):
@@ -270,14 +256,12 @@ def _opening(file: Path) -> Iterator[None]:
         ) from None
 
 
-def sentence_of(error: SQLAlchemyError) -> InputError:
-    """The user's message for a database error. The error itself may quote private text, so it goes to the log."""
-    log.error("The database failed.", exc_info=error)
-    return InputError(
-        "The server's disk is full, so nothing new can be kept: tell the person who runs it."
-        if is_full(error)
-        else "The server's history cannot be read or written: tell the person who runs it."
-    )
+def sentence_of(error: Exception) -> InputError:
+    """The user's message for what fails while something is kept. It may quote private text, so it goes to the log."""
+    if isinstance(error, InputError):
+        return error
+    log.error("Something could not be kept.", exc_info=error)
+    return InputError(DISK_FULL if is_full(error) else BROKEN)
 
 
 @contextmanager
@@ -290,8 +274,10 @@ def sentences() -> Iterator[None]:
 
 
 def is_full(error: BaseException) -> bool:
-    """True if a database's error says that its disk is full."""
-    return isinstance(error, SQLAlchemyError) and "full" in str(getattr(error, "orig", ""))
+    """True if an error says that a disk is full."""
+    return (isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)) or (
+        isinstance(error, SQLAlchemyError) and "full" in str(getattr(error, "orig", ""))
+    )
 
 
 def _engine_of(file: Path) -> Engine:
@@ -313,11 +299,6 @@ def _engine_of(file: Path) -> Engine:
 # ---- rows as the page takes them ---------------------------------------------------------------------
 
 
-def is_removed(run: Run) -> bool:
-    """True for a run that its owner has removed, and may still bring back."""
-    return run.note is not None and run.note.removed is not None
-
-
 def fields_of(text: str) -> dict[str, Any]:
     """A column's JSON; empty if it is damaged."""
     try:
@@ -329,28 +310,19 @@ def fields_of(text: str) -> dict[str, Any]:
 
 def entry_of(run: Run) -> Entry:
     """A row as the page takes it."""
-    now, note = time.time(), run.note or Note(title="", tags="", text="", frame=None, thumbnail="")
+    now = time.time()
     return Entry(
         id=run.id,
         kind=run.kind,
-        title=note.title or run.title,
+        title=run.name or run.title,
         state=run.state,
         message=run.message,
         created=run.created,
         request=fields_of(run.request),
         favourite=run.favourite,
-        links=sum(link.until > now for link in run.links),
-        tags=tuple(note.tags.split()),
-        note=note.text,
-        frame=note.frame,
-        thumbnail=note.thumbnail,
+        links=sum(share.until > now for share in run.shares if not share.public),
+        tags=tuple(run.tags.split()),
+        note=run.note,
+        frame=run.frame,
+        thumbnail=run.thumbnail,
     )
-
-
-def note_of(session: Session, run: str) -> Note:
-    """The note of a run, made where it has none."""
-    found = session.get(Note, run)
-    if found is None:
-        found = Note(run_id=run, title="", tags="", text="", thumbnail="", kept="", part_of="")
-        session.add(found)
-    return found

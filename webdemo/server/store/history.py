@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import logging
-import os
 import re
 import secrets
 import shutil
@@ -27,19 +25,8 @@ from webdemo.server.audit import audit, fingerprint
 from webdemo.ui.history import Opened
 from webdemo.view.thumbnail import thumbnail
 
-from .database import (
-    Database,
-    Link,
-    Note,
-    Run,
-    entry_of,
-    fields_of,
-    is_removed,
-    locked,
-    note_of,
-    sentence_of,
-    sentences,
-)
+from .database import Database, Run, Share, entry_of, fields_of, locked, sentence_of, sentences
+from .folders import whole
 from .storage import ROW_BYTES, RUN_BYTES, Storage, forget, weight_of
 
 log = logging.getLogger(__name__)
@@ -47,8 +34,6 @@ log = logging.getLogger(__name__)
 DAY = 86_400.0
 STEADY_SECONDS = 3600.0
 """A clock that has jumped is trusted after so much time without another jump."""
-MOST_LINKS = 50
-"""Links to one run at a time."""
 UNDO_SECONDS = 600.0
 """For so long a removed run can be brought back."""
 _TRUTH = "truth.npz"
@@ -66,8 +51,6 @@ class History:
         folder: holds a folder a run.
         storage: counts what people store, and makes room; by default with no limit for one person.
         keep_days: age in days at which a run is removed unless it is a favourite.
-        link_days: how long a link lasts.
-        free_bytes: free disk space below which nothing is begun.
         clock: gives seconds since 1970.
     """
 
@@ -79,20 +62,12 @@ class History:
         storage: Storage | None = None,
         clock: Callable[[], float] = time.time,
         keep_days: float = 30,
-        link_days: float = 30,
-        free_bytes: float = 0,
     ) -> None:
         self.database, self.folder = database, folder
         self.storage = storage or Storage(database, folder)
         self.clock = clock
         self._began, self._since = clock() - time.monotonic(), time.monotonic()
-        self.keep_days, self.link_days, self.free_bytes = keep_days, link_days, free_bytes
-        try:
-            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(
-                f"The folder {folder} cannot be made ({error.strerror}): choose another with PASDEDEUX_DATA."
-            ) from None
+        self.keep_days = keep_days
 
     # ---- while a run goes on ---------------------------------------------------------------------
 
@@ -109,7 +84,7 @@ class History:
         Raises:
             InputError: if the disk is nearly full, or the owner has no room and nothing that can make way.
         """
-        self._check_disk()
+        self.storage.check_disk()
         asked = request.to_dict()
         text = json.dumps(asked)
         run = Run(
@@ -127,12 +102,6 @@ class History:
             session.add(run)
         return run.id
 
-    def _check_disk(self) -> None:
-        if shutil.disk_usage(self.folder).free < self.free_bytes:
-            raise InputError(
-                "The server's disk is nearly full, so nothing new can be kept: tell the person who runs it."
-            )
-
     def finish(self, run: str, result: Result) -> None:
         """Keeps a run's result: first its files, then its row, so every finished row has its files.
 
@@ -141,24 +110,14 @@ class History:
         Raises:
             InputError: if it cannot be kept; the run is then marked as failed.
         """
-        try:
-            self._write(run, result)
-        except (OSError, InputError) as error:
-            full = getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT) or "full" in str(error)
-            sentence = (
-                "The result could not be kept in the history, the server's disk is full: download its files now."
-                if full
-                else "The result could not be kept in the history: download its files now."
-            )
-            self.end(run, "failed", sentence)
-            raise InputError(sentence) from None
         outcome = {"manifest": result.manifest, "timings": result.timings, "notes": list(result.notes)}
         if isinstance(result, PredictResult):
             outcome["prediction"] = {name: getattr(result, name) for name in _PREDICTION}
         try:
+            self._write(run, result)
             there, gone = self._enter(run, json.dumps(outcome), thumbnail(result.duets[0]))
-        except (SQLAlchemyError, InputError) as error:
-            reason = sentence_of(error) if isinstance(error, SQLAlchemyError) else error
+        except Exception as error:  # whatever it is, the result itself is there
+            reason = sentence_of(error)
             self.storage.drop([run])
             self.end(run, "failed", str(reason))
             raise InputError(f"{reason} Download the result's files now.") from None
@@ -173,8 +132,7 @@ class History:
                 return False, []
             weight = weight_of(row, self.folder / run) + len(outcome)
             gone = self.storage.make_room(session, row.owner, row.address, weight - row.size, spare=[run])
-            row.state, row.outcome, row.size = "done", outcome, weight
-            note_of(session, run).thumbnail = picture
+            row.state, row.outcome, row.size, row.thumbnail = "done", outcome, weight, picture
         return True, gone
 
     def end(self, run: str, state: str, message: str = "") -> None:
@@ -217,21 +175,28 @@ class History:
             InputError: the same sentence for an unknown run, another person's run and an expired link, to reveal
                 nothing; a different one for the owner's run without a result.
         """
+        return self._opened(self._shown(key, owner))
+
+    @sentences()
+    def _shown(self, key: str, owner: str) -> Run:
+        """The row of a run that somebody may see."""
         if not _KEY.match(key):
             raise InputError(_MISSING)
         with self.database.session() as session:
             run = session.get(Run, key)
             if run is None or not owner or run.owner != owner:
-                link = session.get(Link, key)
-                run = link.run if link is not None and link.until > time.time() else None
-                audit("link-opened", ok=run is not None and not is_removed(run), link=fingerprint(key))
-            if run is None or is_removed(run):
+                shown = (Share.key == key, ~Share.public, Share.until > time.time(), Run.removed.is_(None))
+                run = session.scalar(select(Run).join(Share).where(*shown))
+                audit("link-opened", ok=run is not None, link=fingerprint(key))
+            if run is None or run.removed is not None:
                 raise InputError(_MISSING)
-            entry = entry_of(run)
-            outcome = fields_of(run.outcome)
-        if entry.state != "done":
-            raise InputError(entry.message or f"This run has no result: it is {entry.state}.")
-        return Opened(entry=entry, result=replace(self._read(entry.id, outcome), run=entry.id))
+        return run
+
+    def _opened(self, run: Run) -> Opened:
+        """A run with its result alone, not what it was made from."""
+        if run.state != "done":
+            raise InputError(run.message or f"This run has no result: it is {run.state}.")
+        return Opened(entry=entry_of(run), result=replace(self._read(run.id, fields_of(run.outcome)), run=run.id))
 
     @sentences()
     def delete(self, run: str, owner: str) -> None:
@@ -240,32 +205,9 @@ class History:
             session.delete(self._own(session, run, owner))
         self.storage.drop([run])
 
-    @sentences()
-    def link(self, run: str, owner: str) -> tuple[str, float]:
-        """A new link to a run: its key, and when it ends."""
-        token, until = secrets.token_urlsafe(18), time.time() + self.link_days * DAY
-        with self.database.session.begin() as session:
-            found = self._own(session, run, owner)
-            if found.state != "done":
-                raise InputError(f"This run has no result to show: it is {found.state}.")
-            if len(found.links) >= MOST_LINKS:
-                raise InputError(f"There are {MOST_LINKS} links to this run already: use one of them, or end them all.")
-            session.add(Link(token=token, run_id=found.id, until=until))
-        audit("link-made", run=run, link=fingerprint(token))
-        return token, until
-
-    @sentences()
-    def revoke(self, run: str, owner: str) -> int:
-        """Ends all links to a run; returns how many there were."""
-        with self.database.session.begin() as session:
-            found = self._own(session, run, owner)
-            ended = cast(CursorResult[Any], session.execute(delete(Link).where(Link.run_id == found.id)))
-        audit("links-ended", run=run, count=ended.rowcount)
-        return ended.rowcount
-
     # ---- expiry ----------------------------------------------------------------------------------
 
-    def is_steady(self) -> bool:
+    def _is_steady(self) -> bool:
         """False for an hour after the start, and after the clock has jumped by more than a day."""
         began, now = self.clock() - time.monotonic(), time.monotonic()
         if abs(began - self._began) > DAY:
@@ -281,9 +223,9 @@ class History:
         now = self.clock()
         with self.database.session.begin() as session:
             locked(session)
-            gone = list(session.scalars(select(Note.run_id).where(Note.removed < now - UNDO_SECONDS)))
-            if self.is_steady():
-                session.execute(delete(Link).where(Link.until < now))
+            gone = list(session.scalars(select(Run.id).where(Run.removed < now - UNDO_SECONDS)))
+            if self._is_steady():
+                session.execute(delete(Share).where(Share.until < now))
                 old = Run.created < now - self.keep_days * DAY
                 gone += session.scalars(select(Run.id).where(old, ~Run.favourite, Run.state != "running"))
             gone = [run for run in dict.fromkeys(gone) if forget(session, run)]
@@ -294,15 +236,13 @@ class History:
 
     def _own(self, session: Session, run: str, owner: str) -> Run:
         found = session.get(Run, run) if _KEY.match(run) else None
-        if found is None or not owner or found.owner != owner or is_removed(found):
+        if found is None or not owner or found.owner != owner or found.removed is not None:
             raise InputError("There is no such run in your history: reload the page.")
         return found
 
     def _write(self, run: str, result: Result) -> None:
         """Writes a result's files into a folder that takes its name when it is whole."""
-        half = self.folder / f".{run}"
-        try:
-            half.mkdir(mode=0o700)
+        with whole(self.folder / run) as half:
             for i, duet in enumerate(result.duets):
                 if isinstance(duet, Duet) and not duet.manifest:  # by which the file opens again elsewhere
                     duet = replace(duet, manifest={**result.manifest, "sample": i})
@@ -310,10 +250,6 @@ class History:
             if isinstance(result, PredictResult) and result.truth is not None:
                 formats.write(result.truth, half / _TRUTH)
             (half / "readouts.json").write_text(json.dumps(list(result.readouts), default=float), encoding="utf-8")
-            os.replace(half, self.folder / run)
-        except BaseException:
-            shutil.rmtree(half, ignore_errors=True)
-            raise
 
     def _read(self, run: str, outcome: dict[str, Any]) -> Result:
         folder = self.folder / run

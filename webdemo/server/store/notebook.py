@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import ColumnElement, func, or_, select, update
-from sqlalchemy.orm import selectinload
+from sqlalchemy import ColumnElement, func, or_, select, true, update
 
 from motion import Clip, Duet, InputError, formats
 from motion.metrics import compare
@@ -23,8 +22,8 @@ from webdemo.server.audit import audit
 from webdemo.ui.history import Entry, Found, Kept, Opened, Search, Usage
 from webdemo.ui.visitor import Visitor
 
-from .database import Note, Run, entry_of, fields_of, locked, note_of, sentences
-from .history import History
+from .database import Run, entry_of, fields_of, locked, sentences
+from .sharing import Sharing
 from .storage import weight_of
 
 LONGEST_TITLE, LONGEST_NOTE, LONGEST_TAGS = 200, 4000, 300
@@ -40,8 +39,8 @@ LARGEST_KEPT = 20_000
 """Characters of the settings of a tab."""
 
 
-class Notebook(History):
-    """A history whose owners can search it, write in it, and take it along; see :class:`History`."""
+class Notebook(Sharing):
+    """A history whose owners can search it, write in it, show it and take it along; see :class:`History`."""
 
     # ---- finding ---------------------------------------------------------------------------------
 
@@ -50,22 +49,20 @@ class Notebook(History):
         """The owner's runs that fit, newest first."""
         if not owner:
             return Found((), 0)
-        fit = [Run.owner == owner, Note.removed.is_(None), _ALONE, *_conditions(wanted)]
+        mine = (Run.owner == owner, Run.removed.is_(None))
+        fit = (*mine, Run.part_of == "", *_conditions(wanted))  # a part of a grid has no card of its own
         query = (
             select(Run)
-            .outerjoin(Note)
             .where(*fit)
             .order_by(Run.created.desc(), Run.id)
-            .options(selectinload(Run.links), selectinload(Run.note))
             .offset(max(wanted.offset, 0))
             .limit(min(max(wanted.limit, 1), 500))
         )
-        mine = (Run.owner == owner, Note.removed.is_(None))
         with self.database.session() as session:
-            total = session.scalar(select(func.count()).select_from(Run).outerjoin(Note).where(*fit)) or 0
+            total = session.scalar(select(func.count()).select_from(Run).where(*fit)) or 0
             entries = [entry_of(run) for run in session.scalars(query)]
-            tags = session.scalars(select(Note.tags).join(Run).where(*mine, Note.tags != "").distinct())
-            asked = session.scalars(select(Run.request).outerjoin(Note).where(*mine).distinct())
+            tags = session.scalars(select(Run.tags).where(*mine, Run.tags != "").distinct())
+            asked = session.scalars(select(Run.request).where(*mine).distinct())
             models = {str(fields_of(request).get("model", "")) for request in asked} - {""}
             return Found(entries, total, sorted({tag for line in tags for tag in line.split()}), sorted(models))
 
@@ -77,12 +74,9 @@ class Notebook(History):
 
     def open(self, key: str, owner: str) -> Opened:
         """See :meth:`History.open`; also how the tab was set, and what the run was compared with."""
-        opened = super().open(key, owner)
-        with sentences(), self.database.session() as session:
-            run = session.get(Run, opened.entry.id)
-            kept = fields_of(run.note.kept) if run is not None and run.note is not None else {}
-            whose = run.owner if run is not None else ""
-        mine = bool(owner) and owner == whose  # a link shows the motion, not the file that it began with
+        run = self._shown(key, owner)
+        opened, kept = self._opened(run), fields_of(run.kept)
+        mine = bool(owner) and owner == run.owner  # a link shows the motion, not the file that it began with
         files = sorted((self.folder / opened.entry.id).glob("given-*.npz")) if mine else []
         people = []
         with suppress(OSError, ValueError):
@@ -90,7 +84,7 @@ class Notebook(History):
         beside = []
         for other in kept.get("compared", ())[:MOST_BESIDE]:
             with suppress(InputError):  # it was removed meanwhile
-                beside.append(super().open(str(other), whose))
+                beside.append(super().open(str(other), run.owner))
         found = Kept(controls=kept.get("controls", {}), people=tuple(people), compared=tuple(kept.get("compared", ())))
         return replace(opened, kept=found, beside=tuple(beside))
 
@@ -121,11 +115,9 @@ class Notebook(History):
             mine = self._own(session, run, owner)
             weight = weight_of(mine, self.folder / run)
             gone = self.storage.make_room(session, owner, mine.address, weight - mine.size, spare=[run, *beside])
-            mine.size = weight
-            note_of(session, run).kept = json.dumps(record)
+            mine.size, mine.kept = weight, json.dumps(record)
             for other in beside:
-                self._own(session, other, owner)
-                note_of(session, other).part_of = run
+                self._own(session, other, owner).part_of = run
         return gone
 
     @staticmethod
@@ -157,16 +149,15 @@ class Notebook(History):
             if value is not None and len(value) > most:
                 raise InputError(f"The {name} has {len(value):,} characters: shorten it to {most:,} or fewer.")
         with self.database.session.begin() as session:
-            self._own(session, run, owner)
-            row = note_of(session, run)
+            row = self._own(session, run, owner)
             if title is not None:
-                row.title = " ".join(title.split())
+                row.name = " ".join(title.split())
             if tags is not None:
                 row.tags = "".join(f" {tag}" for tag in dict.fromkeys(_tags(tags)))
                 row.tags += " " if row.tags else ""
             if note is not None:
-                row.text = note.strip()
-                row.frame = frame if row.text else None
+                row.note = note.strip()
+                row.frame = frame if row.note else None
 
     @sentences()
     def remove(self, runs: Sequence[str], owner: str) -> int:
@@ -177,8 +168,7 @@ class Notebook(History):
                 found = self._own(session, run, owner)
                 if found.state == "running":
                     raise InputError("A run that goes on cannot be removed: cancel it first.")
-                note_of(session, found.id).removed = now
-                session.execute(update(Note).where(Note.part_of == found.id).values(removed=now))
+                session.execute(update(Run).where(_with_parts(found.id)).values(removed=now))
         audit("runs-removed", runs=" ".join(runs), count=len(runs))
         return len(runs)
 
@@ -186,21 +176,18 @@ class Notebook(History):
     def favour(self, run: str, owner: str, *, favourite: bool) -> None:
         """Marks a run as one to keep, or no longer, with the parts of its grid."""
         with self.database.session.begin() as session:
-            found = self._own(session, run, owner)
-            found.favourite = favourite
-            parts = select(Note.run_id).where(Note.part_of == run)
-            session.execute(update(Run).where(Run.id.in_(parts), Run.owner == owner).values(favourite=favourite))
+            self._own(session, run, owner)
+            session.execute(update(Run).where(_with_parts(run)).values(favourite=favourite))
 
     @sentences()
     def restore(self, runs: Sequence[str], owner: str) -> int:
         """Brings removed runs back that are not deleted yet; returns how many."""
-        wanted = select(Note).join(Run).where(Run.owner == owner, Note.run_id.in_(list(runs)), Run.owner != "")
+        wanted = (Run.owner == owner, Run.owner != "", Run.id.in_(list(runs)), Run.removed.is_not(None))
         with self.database.session.begin() as session:
-            found = [note for note in session.scalars(wanted) if note.removed is not None]
-            for note in found:
-                note.removed = None
-                session.execute(update(Note).where(Note.part_of == note.run_id).values(removed=None))
-        audit("runs-restored", runs=" ".join(note.run_id for note in found), count=len(found))
+            found = list(session.scalars(select(Run.id).where(*wanted)))
+            for run in found:
+                session.execute(update(Run).where(_with_parts(run)).values(removed=None))
+        audit("runs-restored", runs=" ".join(found), count=len(found))
         return len(found)
 
     # ---- one file --------------------------------------------------------------------------------
@@ -212,24 +199,15 @@ class Notebook(History):
     @sentences()
     def weight(self, owner: str, runs: Sequence[str]) -> float:
         """Bytes of runs, or of all of them for none given: about those that :meth:`export` writes."""
-        wanted = [Run.owner == owner, Run.owner != ""]
-        if runs:
-            wanted.append(or_(Run.id.in_(list(runs)), Note.part_of.in_(list(runs))))
+        wanted = (Run.owner == owner, Run.owner != "", _with_parts(*runs) if runs else true())
         with self.database.session() as session:
-            return session.scalar(select(func.sum(Run.size)).outerjoin(Note).where(*wanted)) or 0
+            return session.scalar(select(func.sum(Run.size)).where(*wanted)) or 0
 
     @sentences()
     def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
         """Writes the motions of finished runs, or of all for none given, into one .zip; returns how many runs."""
-        query = (
-            select(Run)
-            .outerjoin(Note)
-            .options(selectinload(Run.note), selectinload(Run.links))
-            .where(Run.owner == owner, Run.owner != "", Run.state == "done", Note.removed.is_(None))
-            .order_by(Run.created)
-        )
-        if runs:
-            query = query.where(or_(Run.id.in_(list(runs)), Note.part_of.in_(list(runs))))
+        mine = (Run.owner == owner, Run.owner != "", Run.state == "done", Run.removed.is_(None))
+        query = select(Run).where(*mine, _with_parts(*runs) if runs else true()).order_by(Run.created)
         with self.database.session() as session:
             found = [entry_of(run) for run in session.scalars(query)]
         if not found:
@@ -299,21 +277,22 @@ class _Asked:
         return self.fields
 
 
-_ALONE = or_(Note.part_of.is_(None), Note.part_of == "")
-"""No part of another run's grid."""
+def _with_parts(*runs: str) -> ColumnElement[bool]:
+    """Runs and the parts of their grids."""
+    return or_(Run.id.in_(runs), Run.part_of.in_(runs))
 
 
 def _conditions(wanted: Search) -> list[ColumnElement[bool]]:
     found: list[ColumnElement[bool]] = []
     for word in wanted.words.split()[:10]:
-        columns = (Run.title, Note.title, Note.text, Note.tags, Run.request)
+        columns = (Run.title, Run.name, Run.note, Run.tags, Run.request)
         found.append(or_(*(column.icontains(word[:100], autoescape=True) for column in columns)))
     if wanted.kind:
         found.append(Run.kind == wanted.kind)
     if wanted.model:
         found.append(Run.request.contains(f'"model": {json.dumps(wanted.model)}', autoescape=True))
     if wanted.tag:
-        found.append(Note.tags.contains(f" {wanted.tag} ", autoescape=True))
+        found.append(Run.tags.contains(f" {wanted.tag} ", autoescape=True))
     if wanted.starred:
         found.append(Run.favourite.is_(True))
     return found

@@ -24,6 +24,8 @@ from webdemo.server.accounts.quotas import ADDRESS_SHARE
 from webdemo.server.accounts.visitors import digest
 from webdemo.ui.visitor import visitor
 
+from .folders import make_folder
+
 KEPT_SECONDS = 7200.0
 """Seconds after which a file is removed; the history keeps what is needed to make it again."""
 IN_USE_SECONDS = 60.0
@@ -49,12 +51,7 @@ class Scratch:
         self.folder, self.most_bytes = folder, most_bytes
         self._addresses: dict[str, str] = {}
         shutil.rmtree(folder, ignore_errors=True)
-        try:
-            self.uploads.mkdir(mode=0o700, parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(
-                f"The folder {folder} cannot be made ({error.strerror}): choose another with PASDEDEUX_DATA."
-            ) from None
+        make_folder(self.uploads)
 
     @property
     def uploads(self) -> Path:
@@ -207,7 +204,8 @@ def visitors_folder() -> str:
 
 
 def owns(person: str, path: str) -> bool:
-    """True if a path is below a person's folder, with all links on its way followed."""
+    """True if a path is a file below a person's folder, with all links on its way followed."""
     if "\0" in path or not os.path.isabs(path):
         return False
-    return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder_of(person)))
+    found = Path(os.path.realpath(path))
+    return found.is_file() and found.is_relative_to(os.path.realpath(folder_of(person)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import shutil
+import tempfile
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any, cast
@@ -17,21 +18,31 @@ from sqlalchemy import CursorResult, delete, func, select
 from sqlalchemy.orm import Session
 
 from motion import InputError
-from webdemo.server.accounts.quotas import Rooms
+from webdemo.server.accounts.quotas import Quota
 from webdemo.server.accounts.visitors import digest
 from webdemo.ui.history import Usage
 from webdemo.ui.visitor import Visitor
 
-from .database import Database, Note, Run, Study, sentences
+from .database import DISK_FULL, Database, Run, Study, is_full, sentences
+from .folders import make_folder
 from .scratch import Scratch
 
 SET_ASIDE = 0.25
 """Share of a person's room that is for uploads and files for download."""
 ROW_BYTES = 4096
-"""What a run weighs beside its files, its request and its outcome: its row, its note and its thumbnail."""
+"""What a run weighs beside its files, its request and its outcome: its row and its thumbnail."""
 RUN_BYTES = 2**18
 """Room that there has to be, or that runs can make, before a run begins."""
 MB = 2**20
+OWN_ROOM = (
+    "Your room of {:,.0f} MB for runs and studies is used up by favourites and studies, which are not removed on their "
+    "own: stop keeping one, or delete a study."
+)
+EVERYBODYS_ROOM = (
+    "The room for everybody's runs on this server is used up, and nothing of others is removed for yours: remove runs "
+    "of your own, or tell the person who runs the server."
+)
+ADDRESS_ROOM = "The room for runs of people from your network is used up: remove runs of your own."
 
 
 class Storage:
@@ -40,25 +51,48 @@ class Storage:
     Args:
         database: knows whose everything is.
         motions: folder of the runs' files.
-        rooms: how much may be stored.
+        room: how many bytes may be stored.
         scratch: uploads and files for download; None where they are not counted.
+        free_bytes: free disk space below which nothing more is kept.
+
+    Raises:
+        InputError: if the folder cannot be made.
     """
 
     def __init__(
-        self, database: Database, motions: Path, rooms: Rooms | None = None, *, scratch: Scratch | None = None
+        self,
+        database: Database,
+        motions: Path,
+        room: Quota | None = None,
+        *,
+        scratch: Scratch | None = None,
+        free_bytes: float = 0,
     ) -> None:
-        self.database, self.motions, self.scratch = database, motions, scratch
-        self.rooms = rooms or Rooms()
+        self.database, self.motions, self.scratch, self.free_bytes = database, make_folder(motions), scratch, free_bytes
+        self.room = room or Quota("bytes", everybody=2e9)
 
     @property
     def kept_bytes(self) -> float:
         """A person's room for runs and studies."""
-        return (1 - SET_ASIDE) * self.rooms.person
+        return (1 - SET_ASIDE) * self.room.person
 
     @property
     def scratch_bytes(self) -> float:
         """A person's room for uploads and files for download."""
-        return SET_ASIDE * self.rooms.person
+        return SET_ASIDE * self.room.person
+
+    def check_disk(self, size: float = 4096) -> None:
+        """Raises InputError if the disk has no room for so many bytes more, or cannot be written."""
+        try:
+            if self.free_bytes and shutil.disk_usage(self.motions).free < self.free_bytes + size:
+                raise InputError(DISK_FULL)
+            with tempfile.TemporaryFile(dir=self.motions) as file:
+                file.write(b"0" * 4096)
+                file.flush()
+        except OSError as error:
+            raise InputError(
+                DISK_FULL if is_full(error) else f"The server's disk cannot be written: {error.strerror}."
+            ) from None
 
     # ---- what there is ---------------------------------------------------------------------------
 
@@ -76,8 +110,8 @@ class Storage:
             favourites=sizes.get(True, 0),
             studies=studies,
             temporary=self.scratch.used(digest(who.person)) if self.scratch else 0,
-            allowed=self.rooms.person if math.isfinite(self.rooms.person) else self.rooms.everybody,
-            kept=min(self.kept_bytes, self.rooms.everybody),
+            allowed=self.room.person if math.isfinite(self.room.person) else self.room.everybody,
+            kept=min(self.kept_bytes, self.room.everybody),
         )
 
     def importable(self, owner: str, address: str) -> float:
@@ -89,31 +123,13 @@ class Storage:
     def _left(self, session: Session, owner: str, address: str) -> list[tuple[float, str]]:
         """The room left under each limit that holds for a person, and the sentence where it is too little."""
         own = _sum(session, Run, Run.owner == owner) + _sum(session, Study, Study.owner == owner)
-        kept = self.kept_bytes
-        left = [
-            (
-                kept - own,
-                f"Your room of {kept / MB:,.0f} MB for runs and studies is used up by favourites and studies, "
-                "which are not removed on their own: stop keeping one, or delete a study.",
-            )
-        ]
         total = _sum(session, Run) + _sum(session, Study)
-        left.append(
-            (
-                self.rooms.everybody - total,
-                "The room for everybody's runs on this server is used up, and nothing of others is removed for yours: "
-                "remove runs of your own, or tell the person who runs the server.",
-            )
-        )
-        if address:
-            theirs = _sum(session, Run, Run.address == address) + _sum(session, Study, Study.address == address)
-            left.append(
-                (
-                    self.rooms.address - theirs,
-                    "The room for runs of people from your network is used up: remove runs of your own.",
-                )
-            )
-        return left
+        near = _sum(session, Run, Run.address == address) + _sum(session, Study, Study.address == address)
+        return [
+            (self.kept_bytes - own, OWN_ROOM.format(self.kept_bytes / MB)),
+            (self.room.everybody - total, EVERYBODYS_ROOM),
+            (self.room.address - near if address else math.inf, ADDRESS_ROOM),
+        ]
 
     # ---- making room -----------------------------------------------------------------------------
 
@@ -199,8 +215,7 @@ def _sum(session: Session, table: type[Run] | type[Study], *conditions: Any) -> 
 def _evictable(session: Session, owner: str, spare: Collection[str]) -> list[tuple[str, int, bool]]:
     """A person's runs that may make way, with their bytes and whether their owner has removed them; first those."""
     rows = session.execute(
-        select(Run.id, Run.size, Run.favourite, Note.removed)
-        .outerjoin(Note)
+        select(Run.id, Run.size, Run.favourite, Run.removed)
         .where(Run.owner == owner, Run.owner != "", Run.state != "running")
         .order_by(Run.created, Run.id)
     )
@@ -213,5 +228,5 @@ def _evictable(session: Session, owner: str, spare: Collection[str]) -> list[tup
 
 
 def forget(session: Session, run: str) -> bool:
-    """Deletes a run with its note and its links; False if that was done already."""
+    """Deletes a run with what shows it to others; False if that was done already."""
     return bool(cast(CursorResult[Any], session.execute(delete(Run).where(Run.id == run))).rowcount)

@@ -68,7 +68,7 @@ class HistoryTab:
             self.who = gr.HTML(elem_id="history-who")
             self.study = StudyPanel(self.page, self.line)
             self.study.build()
-            self.sharing = SharingPanel(self.page.sharing, self.line)
+            self.sharing = SharingPanel(self.history, self.line)
             self.sharing.build()
             self.files.build()
         self.removed = gr.State([])

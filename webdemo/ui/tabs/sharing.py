@@ -9,7 +9,7 @@ import gradio as gr
 
 from webdemo.ui.components.fields import address_field
 from webdemo.ui.components.notebook import Action
-from webdemo.ui.history import PublicPage, SharingLike
+from webdemo.ui.history import HistoryLike, PublicPage
 from webdemo.ui.public_html import frame_code
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
@@ -22,12 +22,12 @@ class SharingPanel:
     """The part of the History tab where public pages are made and ended.
 
     Args:
-        sharing: keeps the pages.
+        history: keeps the pages.
         line: where the tab says what was done.
     """
 
-    def __init__(self, sharing: SharingLike, line: gr.HTML) -> None:
-        self.sharing, self.line = sharing, line
+    def __init__(self, history: HistoryLike, line: gr.HTML) -> None:
+        self.history, self.line = history, line
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -60,7 +60,7 @@ class SharingPanel:
     @said
     def publish(self, event: gr.EventData) -> Parts:
         """Makes a page of the run that is chosen in the notebook, and shows its address."""
-        page = self.sharing.publish(visitor().owner, Action.read(event._data).one)
+        page = self.history.publish(Action.read(event._data).one, visitor().owner)
         line = f"Published. Anybody with the address can watch until {_day(page.until)}."
         return self._shown(page.key) | {self.fold: gr.update(open=True), self.line: status(line, tone="done")}
 
@@ -71,7 +71,7 @@ class SharingPanel:
 
     def _shown(self, key: str | None) -> Parts:
         who = visitor()
-        mine = {page.key: page for page in self.sharing.pages(who.owner)}
+        mine = {page.key: page for page in self.history.pages(who.owner)}
         if not mine:
             return {self.reading: gr.update(visible=False), self.which: gr.update(choices=[], value=None)}
         found = mine.get(key or "") or next(iter(mine.values()))
@@ -85,7 +85,7 @@ class SharingPanel:
     @said
     def revoke(self, key: str | None) -> Parts:
         """Ends a page."""
-        self.sharing.revoke(key or "", visitor().owner)
+        self.history.end_page(key or "", visitor().owner)
         line = status("The page has ended: its address shows nothing any more.", tone="done")
         return self._shown(None) | {self.line: line}
 
