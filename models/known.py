@@ -159,18 +159,45 @@ class Known:
             self.mask[:, person, at, column] = True
 
 
-class Group(NamedTuple):
-    """Columns (B·2·70) of K control points that are known at the same frames: x becomes ``offset + move @ x``.
+@dataclass
+class Moves:
+    """How columns (B·2·70) of K control points are moved: x becomes ``offset + move @ x``.
+
+    A product for each mask would be as fast on a CPU, and hundreds of tiny kernels on a GPU.
 
     Attributes:
         at: (N,) which columns.
+        group: (N,) which move is theirs.
         offset: (N, K).
-        move: (K, K); None where all frames are known, and nothing of x is left.
+        moves: (G, K, K), one for each mask; zeros where all frames are known, and nothing of x is left.
     """
 
     at: Tensor
+    group: Tensor
     offset: Tensor
-    move: Tensor | None
+    moves: Tensor
+
+    def __call__(self, columns: Tensor) -> Tensor:
+        """Columns (copies, B·2·70, K) with what is known written in."""
+        # In float32 also under autocast: what is known must be met.
+        with torch.autocast(columns.device.type, enabled=False):
+            kept = torch.einsum("nij,cnj->cni", self.moves[self.group], columns[:, self.at].float())
+        return columns.index_copy(1, self.at, (self.offset + kept).to(columns))
+
+
+@dataclass
+class Held:
+    """A :class:`Hold` as a training carries it: what is seen of the known part, and the moves that write it."""
+
+    features: Tensor
+    moves: Moves
+    layout: TokenLayout
+
+    def __call__(self, x: Tensor) -> Tensor:
+        """x (B, tokens, 2·token_features) with the known part written in."""
+        control = unpack(x, self.layout).transpose(2, 3)  # (B, 2, 70, K)
+        columns = control.reshape(1, -1, control.shape[-1])
+        return pack(self.moves(columns).view_as(control).transpose(2, 3), self.layout)
 
 
 class Turned(NamedTuple):
@@ -197,7 +224,7 @@ class Hold:
 
     Attributes:
         features: what a network sees of the known part, see :meth:`Known.features`.
-        groups: how the columns of control points in which something is known are moved, those of one mask together.
+        moves: of the columns of control points in which something is known.
         turned: the people whose bodies are turned to held headings.
     """
 
@@ -218,34 +245,40 @@ class Hold:
         if any(mask.all() for _, mask in self._masks):
             control = torch.stack([layout.fit(self.tokens) @ person for person in known.rows.flatten(0, 1)])
             self._whole = ((control - mean) / std).transpose(1, 2).reshape(len(masks), -1)
-        self.groups: list[Group] = self._solved(torch.eye(self._basis.shape[1], dtype=torch.double))
+        self.moves = self._solved(torch.eye(self._basis.shape[1], dtype=torch.double))
         people = enumerate(zip(known.rows.flatten(0, 1), known.mask.flatten(0, 1), strict=True))
         found = (_turned(i, rows, mask) for i, (rows, mask) in people)
         self.turned = [turned for turned in found if turned is not None]
 
-    def _solved(self, cost: Tensor) -> list[Group]:
+    def _solved(self, cost: Tensor) -> Moves:
         """The moves of least cost that write what is known; columns that are known throughout are replaced."""
-        unit, found = torch.eye(len(cost), dtype=torch.double), []
+        unit, nothing = torch.eye(len(cost), dtype=torch.double), torch.zeros(len(cost), len(cost))
+        found = [(torch.zeros(0, dtype=torch.long), nothing[:0], nothing)]
         for at, mask in self._masks:
             if self._whole is not None and mask.all():
-                found.append(Group(at, self._whole[at], None))
+                found.append((at, self._whole[at], nothing))
                 continue
             seen, wanted = self._basis[mask].double(), self._wanted[at][:, mask].double()
             gain = torch.linalg.solve(seen.T @ seen + _SOFT * cost, seen.T)
-            found.append(Group(at, (wanted @ gain.T).float(), (unit - gain @ seen).float()))
-        return found
+            found.append((at, (wanted @ gain.T).float(), (unit - gain @ seen).float()))
+        at, offset, moves = zip(*found, strict=True)
+        group = torch.arange(len(at)).repeat_interleave(torch.tensor([len(each) for each in at]))
+        return Moves(torch.cat(at), group, torch.cat(offset), torch.stack(moves))
+
+    @property
+    def held(self) -> Held:
+        """The part of it that a training needs."""
+        return Held(self.features, self.moves, self.layout)
 
     @cached_property
-    def _bends(self) -> list[Group]:
+    def _bends(self) -> Moves:
         return self._solved(_stiffness(self._basis.shape[1]))
 
     @property
     def frozen(self) -> Tensor:
         """(B, tokens, 2·token_features) true where a number is fixed and must not change."""
         whole = torch.zeros(1, self.batch * 2 * FEATURES, self._places.shape[1], dtype=torch.bool)
-        for at, _, move in self.groups:
-            if move is None:
-                whole[:, at] = True
+        whole[:, self.moves.at] = ~self.moves.moves.any((1, 2))[self.moves.group, None]
         return self._sample(whole)
 
     @property
@@ -258,14 +291,14 @@ class Hold:
         free = self._basis.double()
         varies = free.square().sum(1)
         found = torch.zeros_like(varies)
-        for at, _, move in self.groups:
-            left = 0.0 if move is None else (free @ move.double()).square().sum(1) / varies
-            found += (at % FEATURES < JOINT_NUMBERS).sum() * (1 - left)
+        of_joints = self.moves.group[self.moves.at % FEATURES < JOINT_NUMBERS]
+        for count, move in zip(of_joints.bincount(minlength=len(self.moves.moves)), self.moves.moves, strict=True):
+            found += count * (1 - (free @ move.double()).square().sum(1) / varies)
         return found / (self.batch * 2 * JOINT_NUMBERS)
 
     def __call__(self, x: Tensor) -> Tensor:
         """x (B, tokens, 2·token_features) with the known part written in; any B if one motion is known."""
-        return self._sample(_moved(self._columns(x), self.groups))
+        return self._sample(self.moves(self._columns(x)))
 
     def bend(self, x: Tensor) -> Tensor:
         """As :meth:`__call__`, with a move that has little curvature and dies out over about half a second.
@@ -276,7 +309,7 @@ class Hold:
         jolt beside it. This one spreads the difference in place and speed (Witkin and Popović 1995, "Motion
         Warping"). It is for predictions of x0; what the network is given is held as in training.
         """
-        return self._sample(_moved(self._turn(self._columns(x)), self._bends))
+        return self._sample(self._bends(self._turn(self._columns(x))))
 
     def _columns(self, x: Tensor) -> Tensor:
         """The control points of each number of a sample: (…, B·2·70, K)."""
@@ -314,15 +347,6 @@ class Hold:
         knots = self.layout.frames_per_knot * (np.arange(body.shape[2]) - 1)
         found = [np.interp(knots, frames, np.pad(each, 1)) for each in np.unwrap(np.angle(apart))]
         return torch.from_numpy(np.stack(found)).to(body)
-
-
-def _moved(columns: Tensor, groups: list[Group]) -> Tensor:
-    """Columns (copies, B·2·70, K) with the moves of groups."""
-    held = columns.clone()
-    for at, offset, move in groups:
-        offset = offset.to(columns)
-        held[:, at] = offset if move is None else offset + columns[:, at] @ move.to(columns).T
-    return held
 
 
 def _stiffness(knots: int) -> Tensor:

@@ -45,6 +45,15 @@ def sinusoids(length: int, width: int, *, device: torch.device | str = "cpu") ->
     return sinusoids_at(torch.arange(length, device=device), width)
 
 
+def encoder_layer(
+    width: int, num_heads: int, ff_size: int, dropout: float = 0.0, *, norm_first: bool = True
+) -> nn.TransformerEncoderLayer:
+    """PyTorch's layer with GELU, the batch first."""
+    return nn.TransformerEncoderLayer(
+        width, num_heads, ff_size, dropout, "gelu", batch_first=True, norm_first=norm_first
+    )
+
+
 class TimestepEmbedding(nn.Module):
     """A timestep's sinusoid row through Linear, SiLU, Linear: (B,) → (B, d)."""
 

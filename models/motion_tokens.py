@@ -108,8 +108,13 @@ def foot_contacts(positions: Tensor, fps: float = 30.0) -> Tensor:
 
 def feature_rows(positions: Tensor, contacts: Tensor) -> Tensor:
     """The 70 numbers of every frame: positions (…, T, 22, 3) in metres, contacts (…, T, 4) → (…, T, 70)."""
+    return torch.cat([pose_rows(positions), contacts], dim=-1)
+
+
+def pose_rows(positions: Tensor) -> Tensor:
+    """(…, 22, 3) → (…, 66): the pelvis, and the other joints relative to it."""
     root = positions[..., :1, :]
-    return torch.cat([root.flatten(-2), (positions[..., 1:, :] - root).flatten(-2), contacts], dim=-1)
+    return torch.cat([root, positions[..., 1:, :] - root], dim=-2).flatten(-2)
 
 
 def encode(positions: Tensor, contacts: Tensor, layout: TokenLayout) -> Tensor:
@@ -161,9 +166,8 @@ class DuetSpace(nn.Module):
     mean: Tensor
     std: Tensor
     reads_known = False
-    """Whether the denoiser takes ``known``, the features of what is known (:attr:`models.known.Hold.features`)."""
-    reads_drafts = False
-    """Whether it sees a draft behind them."""
+    """Whether the denoiser takes ``known``, the features of what is known and of a draft (:meth:`Known.features
+    <models.known.Known.features>`)."""
 
     def __init__(self, layout: TokenLayout) -> None:
         super().__init__()
@@ -175,20 +179,6 @@ class DuetSpace(nn.Module):
     def scale(self) -> Tensor:
         """(2·token_features,) metres to a unit of network space."""
         return self.std.repeat(2 * self.layout.knots_per_token)
-
-    def shown(self, known: Tensor | None, draft: Tensor | None = None) -> Tensor | None:
-        """What the denoiser sees of what is known, and of a draft where it reads drafts.
-
-        Args:
-            known, draft: (B, tokens, features) of :meth:`models.known.Known.features`; None where there is nothing.
-        """
-        seen = known if draft is None else draft
-        if not self.reads_drafts or seen is None:
-            return known
-        nothing = torch.zeros_like(seen)
-        parts = [nothing if part is None else part for part in (known, draft)]
-        people = [part.view(*part.shape[:2], 2, -1) for part in parts]
-        return torch.cat(people, -1).flatten(2)
 
     def control(self, x: Tensor) -> Tensor:
         """Network space (B, tokens, 2·token_features) → control points (B, 2, knots, 70) in metres."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from models.mawgan.network import MAWGANConfig, PredictiveMAWGAN
-from models.motion_mlp import MotionMLP, MotionMLPConfig
+from models.mawgan.network import PredictiveMAWGAN
+from models.motion_mlp import MotionMLP
 from models.weights_io import WeightsFolder, load_network
 
 Predictor = MotionMLP | PredictiveMAWGAN
@@ -19,5 +19,5 @@ def load_predictor(folder: Path) -> tuple[Predictor, WeightsFolder]:
         WeightsError: if a file is missing, altered or of another network.
     """
     if WeightsFolder(folder).meta.get("kind") == "mlp":
-        return load_network(folder, lambda sizes: MotionMLP(MotionMLPConfig(**sizes)))
-    return load_network(folder, lambda sizes: PredictiveMAWGAN(MAWGANConfig.from_dict(sizes)))
+        return load_network(folder, MotionMLP)
+    return load_network(folder, PredictiveMAWGAN)

@@ -11,11 +11,11 @@ import hashlib
 import json
 import mmap
 import weakref
-from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from collections.abc import Mapping
+from dataclasses import asdict, fields
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import torch
 from safetensors import SafetensorError
@@ -24,10 +24,16 @@ from torch import Tensor, nn
 from torch.overrides import TorchFunctionMode
 
 from models.errors import WeightsError
+from models.motion_tokens import TokenLayout
 
 Network = TypeVar("Network", bound=nn.Module)
 SHARD_BYTES = 15_000_000
 """Largest size of one shard in bytes: hosts of repositories reject or warn about larger files."""
+
+
+def common(values: Any, sizes: type) -> dict[str, Any]:
+    """The fields of a dataclass of sizes that other settings have, too, by name."""
+    return {field.name: getattr(values, field.name) for field in fields(sizes) if hasattr(values, field.name)}
 
 
 class WeightsFolder:
@@ -90,20 +96,29 @@ class Uninitialised(TorchFunctionMode):
         return func(*args, **kwargs)
 
 
-def load_network(folder: Path, build: Callable[[dict[str, Any]], Network]) -> tuple[Network, WeightsFolder]:
+def _size(value: Any) -> Any:
+    """A value of ``config.json`` as the dataclass of sizes holds it: lists, and those in them, as tuples."""
+    if isinstance(value, list):
+        return tuple(map(_size, value))
+    return TokenLayout(**value) if isinstance(value, dict) else value
+
+
+def load_network(folder: Path, network: type[Network]) -> tuple[Network, WeightsFolder]:
     """The network of a weights folder in float32 and eval mode, and the folder.
 
     Args:
         folder: written by :func:`save_network`.
-        build: makes the untrained network from the sizes in ``config.json``.
+        network: is made of its sizes, of the dataclass ``network.sizes``.
 
     Raises:
         WeightsError: if a file is missing, altered or of other sizes.
     """
-    source = WeightsFolder(folder)
+    source, sizes = WeightsFolder(folder), cast(Any, network).sizes
+    known = [field.name for field in fields(sizes)]
     try:
+        stored = source.meta["model"]  # of which older folders say more
         with Uninitialised():
-            model = build(source.meta["model"])
+            model = network(sizes(**{name: _size(stored[name]) for name in known if name in stored}))
         model.load_state_dict(source.state_dict(), assign=True)  # every tensor, or it raises
     except (RuntimeError, TypeError, KeyError) as error:
         raise WeightsError(f"The weights in {folder.name} do not fit their config: restore them.") from error

@@ -15,7 +15,6 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .errors import InputError
@@ -24,7 +23,7 @@ from .kinematics import swing_of_units
 from .looks import LOOKS
 from .skeleton import SMPL22
 from .smoothing import smoothstep
-from .vectors import Array, rotations_by, square_frame, unit
+from .vectors import Array, rotation_vectors, rotations_by, square_frame, unit
 
 FOLDER = Path(__file__).resolve().parents[1] / "static" / "bodies"
 _J = {name: index for index, name in enumerate(SMPL22.joint_names)}
@@ -224,7 +223,7 @@ def _turn_trunk(positions: Array, ways: Ways, world: Array) -> None:
     chest = square_frame(ways["spine3", "neck"], ways["right_collar", "left_collar"])
     chest = chest @ square_frame(_REST_WAYS["spine3", "neck"], _REST_WAYS["right_collar", "left_collar"]).T
     world[:, _J["pelvis"]], world[:, _J["spine3"]] = pelvis, chest
-    between = scipy.spatial.transform.Rotation.from_matrix(np.swapaxes(pelvis, -1, -2) @ chest).as_rotvec()
+    between = rotation_vectors(np.swapaxes(pelvis, -1, -2) @ chest)
     for name, child, share in (("spine1", "spine2", 1 / 3), ("spine2", "spine3", 2 / 3)):
         world[:, _J[name]] = _follow(ways, pelvis @ rotations_by(share * between), name, child)
 

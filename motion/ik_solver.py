@@ -10,7 +10,7 @@ import scipy  # its parts are loaded with their first use
 
 from .kinematics import forward_kinematics, global_rotations
 from .skeleton import SMPL22, Layout, Skeleton
-from .vectors import Array
+from .vectors import Array, rotation_vectors, rotations_by
 
 _TURNING = [joint for joint, children in enumerate(SMPL22.children) if children]  # leaves turn nothing
 _FREE = np.array(_TURNING[1:])  # turning joints other than the root
@@ -140,9 +140,8 @@ class _Problem:
         return state._replace(cost=self._cost(state))
 
     def step(self, state: _State, step: Array) -> _State:
-        turns = scipy.spatial.transform.Rotation.from_rotvec(step[:, :-3].reshape(-1, 3)).as_matrix()
         rotations = state.rotations.copy()
-        rotations[:, _TURNING] = turns.reshape(len(step), -1, 3, 3) @ rotations[:, _TURNING]
+        rotations[:, _TURNING] = rotations_by(step[:, :-3].reshape(len(step), -1, 3)) @ rotations[:, _TURNING]
         return self.evaluate(rotations, state.root + step[:, -3:])
 
     def _residuals(self, state: _State) -> tuple[Array, Array]:
@@ -152,14 +151,14 @@ class _Problem:
 
     def _bends(self, state: _State) -> tuple[Array, Array, Array]:
         """(T, F, 3) rotation vectors of the free joints, how far beyond their limits, and |vector|."""
-        bend = _log(state.rotations[:, _FREE])
+        bend = rotation_vectors(state.rotations[:, _FREE])
         beyond = np.where(bend < self.lower, bend - self.lower, np.where(bend > self.upper, bend - self.upper, 0))
         return bend, beyond, np.linalg.norm(bend, axis=-1)
 
     def _turning(self, state: _State) -> Array:
         """(T − 1, F, 3) rotation from each frame to the next of the free joints."""
         local = state.rotations[:, _FREE]
-        return _log(local[1:] @ np.swapaxes(local[:-1], -1, -2))
+        return rotation_vectors(local[1:] @ np.swapaxes(local[:-1], -1, -2))
 
     def _curvature(self, state: _State) -> Array:
         """(T, 22, 3) the acceleration penalty's matrix applied to the positions."""
@@ -267,15 +266,6 @@ def _skew(vectors: Array) -> Array:
     x, y, z = np.moveaxis(vectors, -1, 0)
     zero = np.zeros_like(x)
     return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*vectors.shape, 3)
-
-
-def _log(rotations: Array) -> Array:
-    """(…, 3) rotation vectors."""
-    return (
-        scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3))
-        .as_rotvec()
-        .reshape(rotations.shape[:-1])
-    )
 
 
 def _left_jacobian_inverse(vectors: Array, angle: Array) -> Array:

@@ -193,35 +193,11 @@ def _best(
 Key = tuple[str, str]
 """("left" | "right" | "centre", the part's words in one, lower case)."""
 
-_NOISE = {
-    "mixamorig",
-    "bip",
-    "biped",
-    "valve",
-    "character",
-    "cc",
-    "c",
-    "base",
-    "j",
-    "def",
-    "org",
-    "mcp",
-    "jnt",
-    "joint",
-    "bone",
-    "skel",
-    "skeleton",
-    "ctrl",
-    "rig",
-    "m",
-    "b",
-    "sk",
-    "avg",
-    "f",
-    "x",
-    "bend",
-    "stretch",
-}
+_SAID = (
+    "mixamorig bip biped valve character cc c base j def org mcp jnt joint "
+    "bone skel skeleton ctrl rig m b sk avg f x bend stretch"
+)
+_NOISE = frozenset(_SAID.split())
 """Words of exporters and rigging tools that say nothing about the body; Auto-Rig Pro's and DAZ Genesis' among them."""
 _SIDES = {"l": "left", "left": "left", "lft": "left", "r": "right", "right": "right", "rgt": "right"}
 PARTS: dict[str, tuple[str, ...]] = {

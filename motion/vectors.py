@@ -38,6 +38,17 @@ def rotations_by(vectors: Array) -> Array:
     return np.asarray(turns).reshape(*vectors.shape, 3)
 
 
+def rotation_vectors(rotations: Array) -> Array:
+    """(…, 3) the other way round: axes of rotations (…, 3, 3), as long as the angles in radians."""
+    turns = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec()
+    return np.asarray(turns).reshape(rotations.shape[:-1])
+
+
+def slerp(first: Array, second: Array, share: Array) -> Array:
+    """Rotations (…, 3, 3) a ``share`` (…,) of the shortest way from first to second; it is broadcast."""
+    return first @ rotations_by(share[..., None] * rotation_vectors(np.swapaxes(first, -1, -2) @ second))
+
+
 def floor_speed(place: Array, fps: float) -> Array:
     """(T,) metres a second over the floor of a joint (T, 3)."""
     return np.asarray(np.linalg.norm(np.gradient(place[:, [0, 2]], axis=0), axis=-1) * fps)

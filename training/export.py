@@ -1,27 +1,14 @@
-"""Checkpoint → the folder that is shipped: ``python -m training.export --run DIR --scenes FILE --out DIR``.
-
-Takes the averaged weights, and a bank of training captions which the demo uses to detect that a prompt is far from
-all of them.
-"""
+"""What an InterGen is shipped with: a bank of training captions, by which the demo detects that a prompt is far from
+all of them, and weights averaged with those that its training began with."""
 
 from __future__ import annotations
 
-import argparse
-import json
-from pathlib import Path
-from typing import Any
-
 import torch
 
-from models.intergen.compact import CaptionBank, CompactInterGen, load_folder, save_folder
+from models.intergen.compact import CaptionBank, CompactInterGen
 from motion import InputError
-from training.core import checkpoint
-from training.core.shell import exit_code
 from training.core.text_features import encoded
-from training.prepare import Scenes, load
-from training.trainers.intergen import new_model
-from training.trainers.intergen_data import Data, settings_of
-from training.trainers.touch import with_touches
+from training.prepare import Scenes
 
 BANK_PER_FAMILY = 25
 BANK_PER_ACTS = 3
@@ -73,38 +60,3 @@ def average(model: CompactInterGen, began: CompactInterGen, share: float) -> Non
     for name, value in model.state_dict().items():
         if name in before and value.is_floating_point() and before[name].shape == value.shape:
             value.lerp_(before[name].to(value), 1 - share)
-
-
-def main(argv: list[str] | None = None) -> int:
-    """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(description="Turn a training run into the folder that is shipped.")
-    parser.add_argument("--run", type=Path, required=True, help="--out of the training")
-    parser.add_argument("--scenes", type=Path, required=True)
-    parser.add_argument("--out", type=Path, required=True, help="folder under models/weights")
-    parser.add_argument("--card", type=Path, help="JSON with the card's fields")
-    parser.add_argument("--init", type=Path, help="the folder that the run began with, to average the weights with")
-    parser.add_argument("--share", type=float, default=1.0, help="the run's share in that average, 0 to 1")
-    options = parser.parse_args(argv)
-    return exit_code(lambda: _run(options))
-
-
-def _run(options: argparse.Namespace) -> None:
-    path = options.run / "last.safetensors"
-    meta, settings = checkpoint.metadata(path), settings_of(path)
-    scenes = load(options.scenes)
-    model = new_model(settings, Data(scenes, settings, options.run, "cpu", captions=False))
-    checkpoint.restore_part(path, "ema", model)
-    if options.init is not None:
-        average(model, load_folder(options.init)[0], options.share)
-    try:
-        card: dict[str, Any] = json.loads(options.card.read_text()) if options.card else {}
-    except (OSError, ValueError) as error:
-        raise InputError(f"{options.card} is no JSON file: {error}.") from error
-    model, reads = with_touches(model, scenes)
-    print(f"touches read from test captions: {reads:.1%}")
-    save_folder(options.out, model, caption_bank(scenes), card=card, trained_steps=int(meta["step"]))
-    print(f"{options.out}: {sum(f.stat().st_size for f in options.out.iterdir()) / 1e6:.1f} MB")
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -13,13 +13,11 @@ the last observed pose: that person at the origin, facing +Z.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import torch
 from torch import Tensor, nn
 
-from models.layers import neighbours, sinusoids
-from models.weights_io import WeightsFolder, load_network
+from models.layers import encoder_layer, neighbours, sinusoids
 from motion.skeleton import SMPL22
 
 JOINTS = SMPL22.num_joints
@@ -47,10 +45,6 @@ class RecogniserConfig:
     num_heads: int = 4
     dropout: float = 0.2
 
-    def __post_init__(self) -> None:
-        for name in ("labels", "sentences"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
-
 
 def sampled(positions: Tensor) -> Tensor:
     """(B, OBSERVED + PREDICTED, J, 3) → the frames that the network sees, (B, FRAMES, J, 3)."""
@@ -60,6 +54,7 @@ def sampled(positions: Tensor) -> Tensor:
 class Recogniser(nn.Module):
     """Spatial attention within frames, temporal attention over them, a perceptron on their mean."""
 
+    sizes = RecogniserConfig
     graph: Tensor
 
     def __init__(self, config: RecogniserConfig) -> None:
@@ -68,19 +63,9 @@ class Recogniser(nn.Module):
         width = config.joint_width
         self.joint = nn.Linear(6, width)
         self.joint_place = nn.Parameter(0.02 * torch.randn(JOINTS, width))
-        self.space = nn.TransformerEncoderLayer(
-            width, 2, 2 * width, dropout=0.0, activation="gelu", batch_first=True, norm_first=True
-        )
+        self.space = encoder_layer(width, 2, 2 * width)
         self.frame = nn.Linear(JOINTS * width, config.latent_dim)
-        layer = nn.TransformerEncoderLayer(
-            config.latent_dim,
-            config.num_heads,
-            config.ff_size,
-            dropout=config.dropout,
-            activation="gelu",
-            batch_first=True,
-            norm_first=True,
-        )
+        layer = encoder_layer(config.latent_dim, config.num_heads, config.ff_size, config.dropout)
         self.time = nn.TransformerEncoder(layer, config.num_layers, enable_nested_tensor=False)
         self.top = nn.Sequential(
             nn.LayerNorm(config.latent_dim),
@@ -100,8 +85,3 @@ class Recogniser(nn.Module):
         frames = self.frame(seen.flatten(2))
         frames = frames + sinusoids(frames.shape[1], frames.shape[2], device=frames.device)
         return self.top(self.time(frames).mean(1))
-
-
-def load_folder(folder: Path) -> tuple[Recogniser, WeightsFolder]:
-    """See :func:`models.weights_io.load_network`."""
-    return load_network(folder, lambda sizes: Recogniser(RecogniserConfig(**sizes)))

@@ -12,16 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import torch
 from torch import Tensor, nn
 
 from models.bigraphdiff import BiGraphDiff, BiGraphDiffConfig
 from models.diffusion import TwoPersonDenoiser
-from models.intergen.compact import Touch, as_touches
+from models.intergen.compact import Touch
 from models.motion_tokens import DuetSpace, TokenLayout
-from models.weights_io import WeightsFolder, load_network
+from models.weights_io import common
 
 
 @dataclass(frozen=True)
@@ -43,13 +42,6 @@ class CompactBiGraphDiffConfig:
     cond_dim: int = 128
     max_tokens: int = 48
     layout: TokenLayout = field(default_factory=TokenLayout)
-
-    def __post_init__(self) -> None:
-        set_ = object.__setattr__
-        set_(self, "labels", tuple(self.labels))
-        set_(self, "touches", as_touches(self.touches) or ((),) * len(self.labels))
-        if isinstance(self.layout, dict):  # as JSON holds it
-            set_(self, "layout", TokenLayout(**self.layout))
 
 
 class LabelDenoiser(TwoPersonDenoiser):
@@ -82,20 +74,17 @@ class LabelDenoiser(TwoPersonDenoiser):
 class CompactBiGraphDiff(DuetSpace):
     """Denoiser, vectors of the classes and the normaliser of control points."""
 
+    sizes = CompactBiGraphDiffConfig
+
     def __init__(self, config: CompactBiGraphDiffConfig) -> None:
         super().__init__(config.layout)
         self.config = config
         self.denoiser = LabelDenoiser(
             BiGraphDiffConfig(
                 input_features=config.layout.token_features,
-                latent_dim=config.latent_dim,
-                ff_size=config.ff_size,
-                num_layers=config.num_layers,
-                num_heads=config.num_heads,
                 text_dim=config.cond_dim,
                 max_frames=config.max_tokens,
-                dropout=0.0,
-                embed_dim=config.embed_dim,
+                **common(config, BiGraphDiffConfig),
             )
         )
         self.classes = nn.Embedding(len(config.labels), config.cond_dim)
@@ -107,9 +96,4 @@ class CompactBiGraphDiff(DuetSpace):
 
     def touches(self, label: str) -> Touch:
         """The touch of a class; () if nothing touches."""
-        return self.config.touches[self.config.labels.index(label)]
-
-
-def load_folder(folder: Path) -> tuple[CompactBiGraphDiff, WeightsFolder]:
-    """See :func:`models.weights_io.load_network`."""
-    return load_network(folder, lambda sizes: CompactBiGraphDiff(CompactBiGraphDiffConfig(**sizes)))
+        return self.config.touches[self.config.labels.index(label)] if self.config.touches else ()

@@ -25,6 +25,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.errors import Released
+from models.layers import encoder_layer
 
 NETWORK = "BiGraphDiff"
 NODE_GRID = 4  # a frame's d features are d/16 channels over a 4 × 4 grid in the bipartite unit
@@ -41,12 +42,12 @@ def timestep_embedding(t: Tensor, width: int) -> Tensor:
 class StylizationBlock(nn.Module):
     """The end of every block: a LayerNorm scaled and shifted by the embedding, SiLU, Linear."""
 
-    def __init__(self, latent_dim: int, embed_dim: int, *, dropout: float = 0.0) -> None:
+    def __init__(self, latent_dim: int, embed_dim: int) -> None:
         super().__init__()
         self.emb_layers = nn.Sequential(nn.SiLU(), nn.Linear(embed_dim, 2 * latent_dim))
         self.norm = nn.LayerNorm(latent_dim)
         last = nn.Linear(latent_dim, latent_dim)
-        self.out_layers = nn.Sequential(nn.SiLU(), nn.Dropout(dropout), last)
+        self.out_layers = nn.Sequential(nn.SiLU(), nn.Identity(), last)  # dropout, in the release
         nn.init.zeros_(last.weight)
         nn.init.zeros_(last.bias)
 
@@ -71,13 +72,13 @@ def efficient_attention(query: Tensor, key: Tensor, value: Tensor, num_heads: in
 class Attention(nn.Module):
     """A stream's attention to rows of some width, stylised."""
 
-    def __init__(self, latent_dim: int, width: int, num_heads: int, embed_dim: int, *, dropout: float = 0.0) -> None:
+    def __init__(self, latent_dim: int, width: int, num_heads: int, embed_dim: int) -> None:
         super().__init__()
         self.num_heads = num_heads
         self.norm = nn.LayerNorm(latent_dim)
         self.query = nn.Linear(latent_dim, latent_dim)
         self.key, self.value = nn.Linear(width, latent_dim), nn.Linear(width, latent_dim)
-        self.proj_out = StylizationBlock(latent_dim, embed_dim, dropout=dropout)
+        self.proj_out = StylizationBlock(latent_dim, embed_dim)
 
 
 class SelfAttention(Attention):
@@ -94,8 +95,8 @@ class SelfAttention(Attention):
 class CrossAttention(Attention):
     """A stream's attention to the text tokens."""
 
-    def __init__(self, latent_dim: int, width: int, num_heads: int, embed_dim: int, *, dropout: float = 0.0) -> None:
-        super().__init__(latent_dim, width, num_heads, embed_dim, dropout=dropout)
+    def __init__(self, latent_dim: int, width: int, num_heads: int, embed_dim: int) -> None:
+        super().__init__(latent_dim, width, num_heads, embed_dim)
         self.text_norm = nn.LayerNorm(width)
 
     def forward(self, x: Tensor, text: Tensor, emb: Tensor) -> Tensor:
@@ -108,16 +109,15 @@ class CrossAttention(Attention):
 class FeedForward(nn.Module):
     """Linear, GELU, Linear, stylised."""
 
-    def __init__(self, latent_dim: int, ff_size: int, embed_dim: int, *, dropout: float = 0.0) -> None:
+    def __init__(self, latent_dim: int, ff_size: int, embed_dim: int) -> None:
         super().__init__()
         self.linear1 = nn.Linear(latent_dim, ff_size)
         self.linear2 = nn.Linear(ff_size, latent_dim)
-        self.dropout = nn.Dropout(dropout)
-        self.proj_out = StylizationBlock(latent_dim, embed_dim, dropout=dropout)
+        self.proj_out = StylizationBlock(latent_dim, embed_dim)
 
     def forward(self, x: Tensor, emb: Tensor) -> Tensor:
         """x (B, T, d), emb (B, E) → (B, T, d)."""
-        return x + self.proj_out(self.linear2(self.dropout(F.gelu(self.linear1(x)))), emb)
+        return x + self.proj_out(self.linear2(F.gelu(self.linear1(x))), emb)
 
 
 class GraphConvolution(nn.Module):
@@ -178,7 +178,6 @@ class BiGraphDiffConfig:
     text_dim: int = 256
     max_frames: int = 300
     num_nodes: int = 16
-    dropout: float = 0.1
     embed_dim: int = 0
 
     @property
@@ -192,12 +191,11 @@ class Layer(nn.Module):
 
     def __init__(self, config: BiGraphDiffConfig) -> None:
         super().__init__()
-        d, heads, wide, drop = config.latent_dim, config.num_heads, config.embedding, config.dropout
-        text = config.text_dim
-        self.sa_block_1, self.sa_block_2 = (SelfAttention(d, d, heads, wide, dropout=drop) for _ in range(2))
-        self.ca_block_1, self.ca_block_2 = (CrossAttention(d, text, heads, wide, dropout=drop) for _ in range(2))
+        d, heads, wide, text = config.latent_dim, config.num_heads, config.embedding, config.text_dim
+        self.sa_block_1, self.sa_block_2 = (SelfAttention(d, d, heads, wide) for _ in range(2))
+        self.ca_block_1, self.ca_block_2 = (CrossAttention(d, text, heads, wide) for _ in range(2))
         self.bipartite_graph = BipartiteGraph(d // NODE_GRID**2, config.num_nodes)
-        self.ffn_1, self.ffn_2 = (FeedForward(d, config.ff_size, wide, dropout=drop) for _ in range(2))
+        self.ffn_1, self.ffn_2 = (FeedForward(d, config.ff_size, wide) for _ in range(2))
 
     def forward(self, a: Tensor, b: Tensor, text: Tensor, emb: Tensor, mask: Tensor) -> tuple[Tensor, Tensor]:
         """a and b (B, T, d), text (B, L, C), emb (B, E), mask (B, T, 1) → a and b."""
@@ -221,9 +219,7 @@ class TextSide(nn.Module):
     def __init__(self, clip_dim: int, text_dim: int, ff_size: int, num_layers: int, num_heads: int) -> None:
         super().__init__()
         self.text_pre_proj = nn.Linear(clip_dim, text_dim)
-        layer = nn.TransformerEncoderLayer(
-            text_dim, num_heads, ff_size, dropout=0.0, activation="gelu", batch_first=True
-        )
+        layer = encoder_layer(text_dim, num_heads, ff_size, norm_first=False)
         self.textTransEncoder = nn.TransformerEncoder(layer, num_layers, enable_nested_tensor=False)
         self.text_ln = nn.LayerNorm(text_dim)
 

@@ -145,27 +145,6 @@ class TwoPersonDenoiser(nn.Module, ABC):
         mask[1, 9:] = False
         return x, torch.tensor([999, 500]), cond, mask
 
-    def drafted(self, known: Tensor) -> Tensor | None:
-        """True at the numbers (B, tokens, features) of which a draft says something; None without one."""
-        return None
-
-    def guided(
-        self,
-        x: Tensor,
-        t: Tensor,
-        cond: Tensor,
-        mask: Tensor | None = None,
-        known: Tensor | None = None,
-        *,
-        scale: float = 3.5,
-    ) -> Tensor:
-        """:func:`classifier_free` on the words; shapes are as in ``forward``, and ``known`` may have one row."""
-        if known is None:
-            return classifier_free(lambda x, t, mask, cond: self(x, t, cond, mask), x, t, mask, cond=cond, scale=scale)
-        known = known.expand(len(x), -1, -1)
-        drafted = self.drafted(known)
-
-        def predict(x: Tensor, t: Tensor, mask: Tensor | None, known: Tensor, cond: Tensor) -> Tensor:
-            return self(x, t, cond, mask, known=known)
-
-        return classifier_free(predict, x, t, mask, known, cond=cond, scale=scale, drafted=drafted)
+    def guided(self, x: Tensor, t: Tensor, cond: Tensor, *, scale: float = 3.5) -> Tensor:
+        """:func:`classifier_free` on the condition; shapes are as in ``forward``."""
+        return classifier_free(self, x, t, cond=cond, scale=scale)

@@ -27,7 +27,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import torch
 import torch.nn.functional as F
@@ -35,7 +34,6 @@ from torch import Tensor, nn
 
 from models.interformer.network import JOINTS
 from models.layers import FeedForward, neighbours, sinusoids
-from models.weights_io import WeightsFolder, load_network
 from motion.skeleton import LAYOUTS, SBU15
 
 FPS = 15.0
@@ -202,6 +200,7 @@ class CompactInterFormer(nn.Module):
     input features; ``step_std`` (J, 3), metres between two frames; ``stance`` (22, 3), a standing person facing +Z.
     """
 
+    sizes = CompactInterFormerConfig
     actor_mean: Tensor
     actor_std: Tensor
     reactor_mean: Tensor
@@ -329,8 +328,3 @@ class CompactInterFormer(nn.Module):
         """(B, T, D) and (B, T, F) → (B, T, J, 3) metres to the next pose."""
         steps = self.linear(features) + self.out(self.out_norm(x))
         return steps.unflatten(-1, (JOINTS, 3)) * self.step_std
-
-
-def load_folder(folder: Path) -> tuple[CompactInterFormer, WeightsFolder]:
-    """See :func:`models.weights_io.load_network`."""
-    return load_network(folder, lambda sizes: CompactInterFormer(CompactInterFormerConfig(**sizes)))

@@ -70,13 +70,6 @@ def joint_distances(source: Tensor, target: Tensor) -> Tensor:
     return table.flatten(-2).softmax(-1).view_as(table)
 
 
-def target_mask(frames: int, *, device: torch.device | str = "cpu") -> Tensor:
-    """(1, T, T) bool: no frame sees a later one, but the first sees the given pose after it."""
-    mask = torch.ones(frames, frames, dtype=torch.bool, device=device).tril()
-    mask[0, :2] = True
-    return mask[None]
-
-
 class Norm(nn.Module):
     """(x − mean) / (unbiased std + 1e-6) · alpha + bias over the last axis."""
 
@@ -120,8 +113,8 @@ class TemporalAttention(nn.Module):
         """Keys and values of frames (B, S, 45), each (B, heads, S, 45 / heads)."""
         return self._split(self.k_linear(memory)), self._split(self.v_linear(memory))
 
-    def forward(self, query: Tensor, memory: KeysValues, mask: Tensor | None) -> Tensor:
-        """query (B, T, 45), mask (B or 1, T or 1, S) bool, none where all is seen → (B, T, 45)."""
+    def forward(self, query: Tensor, memory: KeysValues, mask: Tensor | None = None) -> Tensor:
+        """query (B, T, 45), mask (B, 1, S) bool, none where all is seen → (B, T, 45)."""
         q, (k, v) = self._split(self.q_linear(query)), memory
         scores = (q @ k.mT / math.sqrt(q.shape[-1])).abs()
         if mask is not None:
@@ -195,13 +188,11 @@ class DecoderLayer(nn.Module):
         self.attn_space_1, self.attn_space_2 = SpatialAttention(), SpatialAttention()
         self.ff = feed_forward(config.ff_size)
 
-    def forward(
-        self, x: Tensor, kept: LayerMemory, distances: Tensor, source_mask: Tensor, mask: Tensor | None, graph: Tensor
-    ) -> Tensor:
-        """x (B, T, 45), the frames after those that are kept already."""
+    def forward(self, x: Tensor, kept: LayerMemory, distances: Tensor, source_mask: Tensor, graph: Tensor) -> Tensor:
+        """x (B, T, 45), the frames after those that are kept already, which see these and each other."""
         y = self.norm_1(x)
         joints = tuple(part[:, kept.length : kept.length + x.shape[1]] for part in kept.joints)
-        both = self.norm_2(x + self.attn_1(y, kept.extended(self.attn_1.remember(y)), mask))
+        both = self.norm_2(x + self.attn_1(y, kept.extended(self.attn_1.remember(y))))
         both = self.norm_3(both + self.attn_2(both, kept.actor, source_mask))
         space = self.norm_space_1(x + self.attn_space_1(y, self.attn_space_1.remember(y), graph=graph))
         both = both + self.norm_space_2(space + self.attn_space_2(space, joints, distances=distances))
@@ -226,8 +217,6 @@ class LayerMemory:
     def extended(self, new: KeysValues) -> KeysValues:
         """Keys and values of the target so far, with those of its next frames (B, heads, …, 45 / heads)."""
         begun, self.length = self.length, self.length + new[0].shape[2]
-        if new[0].shape[2] == self.frames:
-            return new
         if self._room is None:
             size, heads, _, width = new[0].shape
             keys, values = new[0].new_empty(2, size, heads, self.frames, width).unbind()
@@ -268,7 +257,7 @@ class Decoder(nn.Module):
         """Each layer's memory of the actor (B, S, 45), for a target of so many frames."""
         return [LayerMemory(cast(DecoderLayer, layer), memory, frames) for layer in self.layers]
 
-    def forward(self, x: Tensor, kept: list[LayerMemory], *others: Tensor | None) -> Tensor:
+    def forward(self, x: Tensor, kept: list[LayerMemory], *others: Tensor) -> Tensor:
         """x (B, T, 45), the target's next frames; the others as in :meth:`DecoderLayer.forward`."""
         x = self.pe(x, kept[0].length)
         for layer, memory in zip(self.layers, kept, strict=True):
@@ -286,34 +275,15 @@ class InterFormer(nn.Module):
         self.out = nn.Linear(WIDTH, WIDTH)
         self.register_buffer("graph", neighbours(SBU15), persistent=False)
 
-    def forward(
-        self, source: Tensor, target_input: Tensor, distances: Tensor, source_mask: Tensor, target_mask: Tensor
-    ) -> Tensor:
-        """The next frame at every target frame.
+    @torch.inference_mode()
+    def generate(self, source: Tensor, source_mask: Tensor, first_frame: Tensor, frames: int) -> Tensor:
+        """The reaction, a frame at a time, each at one frame's cost.
 
         Args:
             source: (B, S, 45) the actor.
-            target_input: (B, T, 45) the reactor so far, T ≤ S.
-            distances: (B, T, J, J) of :func:`joint_distances`.
             source_mask: (B, 1, S) bool, false at padding.
-            target_mask: (B or 1, T, T) bool, see :func:`target_mask`.
-
-        Returns:
-            (B, T, 45)
-        """
-        memory = self.encoder(source, source_mask, self.graph)
-        return self.decode(memory, target_input, distances, source_mask, target_mask)
-
-    def decode(
-        self, memory: Tensor, target_input: Tensor, distances: Tensor, source_mask: Tensor, mask: Tensor
-    ) -> Tensor:
-        """:meth:`forward` from the encoder's output (B, S, 45) on."""
-        kept = self.decoder.remember(memory, target_input.shape[1])
-        return self.out(self.decoder(target_input, kept, distances, source_mask, mask, self.graph))
-
-    @torch.inference_mode()
-    def generate(self, source: Tensor, source_mask: Tensor, first_frame: Tensor, frames: int) -> Tensor:
-        """The reaction, a frame at a time from the given first one (B, 45), each at one frame's cost.
+            first_frame: (B, 45) the reactor's first frame.
+            frames: T, S or fewer.
 
         Returns:
             (B, frames, 45): zeros, the first frame, then what the network makes.
@@ -325,7 +295,7 @@ class InterFormer(nn.Module):
         for end in range(2, frames):  # the first two see each other, and each later one all before
             new = made[:, begun:end]
             table = joint_distances(source[:, begun:end], new)
-            made[:, end] = self.out(self.decoder(new, kept, table, source_mask, None, self.graph))[:, -1]
+            made[:, end] = self.out(self.decoder(new, kept, table, source_mask, self.graph))[:, -1]
             begun = end
         return made
 

@@ -8,8 +8,8 @@ which measures how far a prompt is from the training data.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +17,11 @@ import torch
 from safetensors.torch import save
 from torch import Tensor, nn
 
-from models.intergen import InterGenConfig, InterGenDenoiser
+from models.intergen import InterGenConfig
 from models.known import KNOWN_FEATURES
 from models.motion_tokens import DuetSpace, TokenLayout
 from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
-from models.weights_io import WeightsFolder, load_network, save_network
-from motion.errors import InputError
+from models.weights_io import WeightsFolder, common, save_network
 
 from .words import WordDenoiser
 
@@ -30,20 +29,9 @@ Touch = tuple[tuple[str, str], ...]
 """Which joints of the two people come together: (joint of a, joint of b), …"""
 
 
-def as_touches(values: Iterable[Iterable[Sequence[str]]]) -> tuple[Touch, ...]:
-    """Touches as JSON holds them, in lists, as the tuples that a config holds."""
-    return tuple(tuple((a, b) for a, b in touch) for touch in values)
-
-
 @dataclass(frozen=True)
 class CompactConfig:
-    """Sizes of a :class:`CompactInterGen`, and the touches that it reads from a sentence.
-
-    role_text: see :class:`models.intergen.InterGenConfig`.
-    words: the denoiser is a :class:`models.intergen.words.WordDenoiser`, which reads words, a sentence for each
-        person and the known part of a motion.
-    drafts: with ``words``, it reads drafts, too.
-    """
+    """Sizes of a :class:`CompactInterGen`, and the touches that it reads from a sentence."""
 
     latent_dim: int = 320
     ff_size: int = 1024
@@ -52,18 +40,8 @@ class CompactConfig:
     cond_dim: int = 256
     text_layers: int = 2
     dropout: float = 0.0
-    role_text: bool = False
-    words: bool = False
-    drafts: bool = False
     layout: TokenLayout = field(default_factory=TokenLayout)
     touches: tuple[Touch, ...] = ()
-
-    @classmethod
-    def from_dict(cls, values: dict[str, Any]) -> CompactConfig:
-        """The config that ``config.json`` holds as a dictionary."""
-        known = {key: value for key, value in values.items() if key != "fast_rank"}  # 0 in the shipped folder
-        touches = as_touches(values.get("touches", ()))
-        return cls(**(known | {"layout": TokenLayout(**values["layout"]), "touches": touches}))
 
 
 class TouchReader(nn.Module):
@@ -73,37 +51,38 @@ class TouchReader(nn.Module):
     small classifier is fitted after the network, on its frozen condition vectors (:mod:`training.trainers.touch`).
     """
 
-    def __init__(self, cond_dim: int, touches: Sequence[Touch], width: int = 128) -> None:
+    def __init__(self, cond_dim: int, touches: Sequence[Touch]) -> None:
         super().__init__()
         self.touches: tuple[Touch, ...] = ((), *touches)
-        self.net = nn.Sequential(nn.Linear(cond_dim, width), nn.GELU(), nn.Linear(width, len(self.touches)))
+        self.net = nn.Sequential(nn.Linear(cond_dim, 128), nn.GELU(), nn.Linear(128, len(self.touches)))
 
     def forward(self, condition: Tensor) -> Tensor:
         """Condition (B, cond_dim) → logits (B, 1 + touches); the first says that nothing touches."""
         return self.net(condition)
 
-    @torch.no_grad()
-    def read(self, condition: Tensor, sure: float = 0.5) -> list[Touch]:
-        """The likeliest touch of each sentence, () where all touches together are less than ``sure``."""
-        probability = self(condition).softmax(-1)
-        due = 1 - probability[:, 0] >= sure
-        best = probability[:, 1:].argmax(-1) + 1
-        return [self.touches[int(i)] if d else () for d, i in zip(due, best, strict=True)]
+
+@torch.no_grad()
+def read_touches(reader: TouchReader | None, condition: Tensor) -> list[Touch]:
+    """The likeliest touch of each condition vector (B, cond_dim), () where none is as likely, or nobody reads them."""
+    if reader is None:
+        return [()] * len(condition)
+    probability = reader(condition).softmax(-1)
+    due = 1 - probability[:, 0] >= 0.5
+    best = probability[:, 1:].argmax(-1) + 1
+    return [reader.touches[int(i)] if d else () for d, i in zip(due, best, strict=True)]
 
 
 class CompactInterGen(DuetSpace):
     """Denoiser, text conditioner and the normaliser of control points."""
 
+    sizes = CompactConfig
+    reads_known = True
+
     def __init__(self, config: CompactConfig) -> None:
         super().__init__(config.layout)
-        self.config, self.reads_known, self.reads_drafts = config, config.words, config.drafts
-        shared = {f.name: getattr(config, f.name) for f in fields(InterGenConfig) if hasattr(config, f.name)}
-        sizes = InterGenConfig(**shared, input_features=config.layout.token_features, role_embedding=True)
-        self.denoiser: InterGenDenoiser = (
-            WordDenoiser(sizes, KNOWN_FEATURES * config.layout.knots_per_token, drafts=config.drafts)
-            if config.words
-            else InterGenDenoiser(sizes)
-        )
+        self.config = config
+        sizes = InterGenConfig(**common(config, InterGenConfig), input_features=config.layout.token_features)
+        self.denoiser = WordDenoiser(sizes, KNOWN_FEATURES * config.layout.knots_per_token)
         self.conditioner = TextConditioner(
             TextConditionerConfig(latent_dim=config.cond_dim, num_layers=config.text_layers, dropout=0.05)
         )
@@ -114,13 +93,11 @@ class CompactInterGen(DuetSpace):
 
         Args:
             both: of B sentences; one without tokens is missing.
-            a, b: of B sentences for each person; only a network with ``words`` reads them.
+            a, b: of B sentences for each person.
 
         Returns:
-            (B, cond_dim), or with ``words`` (B, 3, R, cond_dim), R rows for the longest sentence.
+            (B, 3, R, cond_dim), R rows for the longest sentence.
         """
-        if not self.config.words:
-            return self.conditioner(both.features, both.mask)
         given = {i: tokens for i, tokens in enumerate((both, a, b)) if tokens is not None}
         longest = 1 + max(tokens.mask.shape[1] for tokens in given.values())
         text = both.features.new_zeros(len(both.mask), 3, longest, self.config.cond_dim)
@@ -131,30 +108,23 @@ class CompactInterGen(DuetSpace):
 
     def no_condition(self, batch: int = 1) -> Tensor:
         """The condition of no words."""
-        shape = (3, 1, self.config.cond_dim) if self.config.words else (self.config.cond_dim,)
-        return torch.zeros(batch, *shape)
-
-    def vector(self, condition: Tensor) -> Tensor:
-        """The vector (B, cond_dim) of the sentence for both people in what :meth:`condition` gives."""
-        return condition[:, 0, 0] if self.config.words else condition
+        return torch.zeros(batch, 3, 1, self.config.cond_dim)
 
     def touches(self, condition: Tensor) -> list[Touch]:
         """The joints that should touch, for each condition of :meth:`condition`; () if none should."""
-        if self.touch_reader is None:
-            return [()] * len(condition)
-        return self.touch_reader.read(self.vector(condition))
+        return read_touches(self.touch_reader, condition[:, 0, 0])  # the vector of the sentence for both people
 
-    def grow_from(self, trained: CompactInterGen) -> None:
-        """Takes over the weights of a network without ``words`` or with them; what it lacks stays as it is.
+    def shown(self, known: Tensor | None, draft: Tensor | None = None) -> Tensor | None:
+        """What the denoiser sees of what is known and of a draft; None where there is neither.
 
-        Raises:
-            InputError: if its sizes are others.
+        Args:
+            known, draft: (B, tokens, features) of :meth:`models.known.Known.features`; None where there is nothing.
         """
-        own, taken = self.state_dict(), trained.state_dict()
-        taken = {name: tensor for name, tensor in taken.items() if not name.startswith("touch_reader.")}
-        if any(name not in own or own[name].shape != tensor.shape for name, tensor in taken.items()):
-            raise InputError("The weights to begin with are of other sizes: give the sizes they were trained with.")
-        self.load_state_dict(own | taken)
+        seen = known if draft is None else draft
+        if seen is None:
+            return None
+        parts = [torch.zeros_like(seen) if part is None else part for part in (known, draft)]
+        return torch.cat([part.view(*part.shape[:2], 2, -1) for part in parts], -1).flatten(2)
 
 
 @dataclass(frozen=True)
@@ -170,11 +140,6 @@ class CaptionBank:
         scores = self.vectors.float() @ vector.float()
         best = scores.topk(min(count, len(self.captions)))
         return [(float(s), self.captions[int(i)]) for s, i in zip(best.values, best.indices, strict=True)]
-
-
-def load_folder(folder: Path) -> tuple[CompactInterGen, WeightsFolder]:
-    """See :func:`models.weights_io.load_network`."""
-    return load_network(folder, lambda sizes: CompactInterGen(CompactConfig.from_dict(sizes)))
 
 
 def load_captions(source: WeightsFolder) -> CaptionBank:

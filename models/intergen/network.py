@@ -11,7 +11,6 @@ as one batch and the counterpart of each is a flip of the first axis.
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -36,12 +35,6 @@ class InterGenConfig:
     cond_dim: width of the text vector.
     dropout: applied in attention and the feed-forward layers while training; the released weights were
         trained with 0.1, and it holds no weights.
-    role_embedding: an extension, off in released weights: a learned vector for each person is added to
-        their tokens, which distinguishes actor from reactor. Without it the network is symmetric:
-        swapping the people swaps the outputs (eq. 5).
-    role_text: an extension, off in released weights: the text vector has a part that
-        enters the two people's AdaLN layers with opposite signs. It helps with prompts that give the two
-        different actions, such as "one waves with the left hand, the other with the right".
     """
 
     input_features: int = 262
@@ -51,8 +44,6 @@ class InterGenConfig:
     num_heads: int = 8
     cond_dim: int = 768
     dropout: float = 0.0
-    role_embedding: bool = False
-    role_text: bool = False
 
 
 class AdaLayerNorm(nn.Module):
@@ -177,7 +168,7 @@ def padding(mask: Tensor | None) -> tuple[Tensor | None, Tensor | None]:
 
 
 class InterGenDenoiser(TwoPersonDenoiser):
-    """D_θ of eq. 8 for both people at once."""
+    """D_θ of eq. 8 for both people at once. It is symmetric: swapping the people swaps the outputs (eq. 5)."""
 
     def __init__(self, config: InterGenConfig) -> None:
         super().__init__()
@@ -191,24 +182,14 @@ class InterGenDenoiser(TwoPersonDenoiser):
         nn.init.zeros_(linear.weight)
         nn.init.zeros_(linear.bias)
         self.out = nn.Sequential(OrderedDict(linear=linear))
-        if config.role_embedding:
-            self.role_embedding = nn.Parameter(torch.randn(2, d) / math.sqrt(d))
-        if config.role_text:
-            self.role_text = nn.Linear(config.cond_dim, d, bias=False)
-            nn.init.zeros_(self.role_text.weight)
 
     def embed(self, t: Tensor, cond: Tensor) -> Tensor:
-        """The embedding for AdaLN of timesteps (B,) and text (B, C): (B, d), or (2, B, d) with ``role_text``."""
-        emb = self.embed_timestep(t) + self.text_embed(cond)
-        if self.config.role_text:
-            own = self.role_text(cond)
-            emb = torch.stack([emb + own, emb - own])
-        return emb
+        """The embedding for AdaLN of timesteps (B,) and text (B, C): (B, d)."""
+        return self.embed_timestep(t) + self.text_embed(cond)
 
     def embed_motion(self, people: Tensor) -> Tensor:
         """States of both people's tokens before the first block: (2, B, T, F) → (2, B, T, d)."""
-        h = self.motion_embed(people) + sinusoids(people.shape[2], self.config.latent_dim, device=people.device)
-        return h + self.role_embedding[:, None, None] if self.config.role_embedding else h
+        return self.motion_embed(people) + sinusoids(people.shape[2], self.config.latent_dim, device=people.device)
 
     def forward(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> Tensor:
         """The predicted clean motion.
@@ -251,7 +232,5 @@ def from_released(weights: Mapping[str, Tensor], *, num_heads: int) -> InterGenD
         num_layers=tensors.layers("blocks."),
         num_heads=num_heads,
         cond_dim=tensors.shape("text_embed.weight")[1],
-        role_embedding="role_embedding" in tensors,
-        role_text="role_text.weight" in tensors,
     )
     return tensors.loaded(InterGenDenoiser(config))

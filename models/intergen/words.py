@@ -1,10 +1,9 @@
 """InterGen's denoiser grown: it reads words, one sentence for both people and one for each, and sees what is known.
 
-The parts of :class:`models.intergen.InterGenDenoiser` stay as they are. New are attention to the words' features
-in every block, the vectors of each person's own sentence in AdaLN, and an embedding of the known part of the
-motion (:mod:`models.known`). With ``drafts`` the network also sees a draft: poses that the motion should follow without
-being held to them. All of these parts begin at zero, so a network grown from trained weights gives what those gave
-until it is trained.
+The parts of :class:`models.intergen.InterGenDenoiser` stay as they are. New are a vector for each person, attention to
+the words' features in every block, the vectors of each person's own sentence in AdaLN, and an embedding of the known
+part of the motion (:mod:`models.known`) and of a draft: poses that the motion should follow without being held to them.
+The parts that read begin at zero.
 
 Shapes: B batch, T tokens in time, F features a person and token, R rows a sentence (its vector, then a word each),
 C text width, d latent width; the text of a motion is (B, 3, R, C): the sentence for both people, for a, for b.
@@ -13,10 +12,13 @@ A row of zeros is padding, and a sentence of zeros is missing.
 
 from __future__ import annotations
 
+import math
+
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from models.diffusion import classifier_free
 from models.known import KNOWN_FEATURES
 from models.motion_tokens import FEATURES
 
@@ -94,21 +96,24 @@ class WordDenoiser(InterGenDenoiser):
 
     Args:
         config: sizes; its text width is that of a row of text.
-        known_features: numbers a person and token by which the network sees what is known.
-        drafts: it reads drafts: as many numbers more, behind these.
+        known_features: numbers a person and token by which the network sees what is known, and as many of a draft.
     """
 
-    def __init__(self, config: InterGenConfig, known_features: int, *, drafts: bool = False) -> None:
+    def __init__(self, config: InterGenConfig, known_features: int) -> None:
         super().__init__(config)
         d = config.latent_dim
+        # What tells the actor from the reactor: a vector of each, and a part of the text with opposite signs.
+        self.role_embedding = nn.Parameter(torch.randn(2, d) / math.sqrt(d))
+        self.role_text = nn.Linear(config.cond_dim, d, bias=False)
+        nn.init.zeros_(self.role_text.weight)
         self.blocks = nn.ModuleList(WordBlock(config) for _ in range(config.num_layers))
         self.sentence_kinds = nn.Parameter(0.02 * torch.randn(3, config.cond_dim))  # both, own, the other's
         self.person_text = nn.Linear(2 * config.cond_dim, d, bias=False)
         self.known_embed = nn.Linear(known_features, d, bias=False)
         nn.init.zeros_(self.person_text.weight)
         nn.init.zeros_(self.known_embed.weight)
-        self.draft = Draft(known_features, config) if drafts else None
-        self.seen_features = known_features * (2 if drafts else 1)
+        self.draft = Draft(known_features, config)
+        self.seen_features = 2 * known_features
 
     def forward(
         self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, known: Tensor | None = None
@@ -120,8 +125,8 @@ class WordDenoiser(InterGenDenoiser):
             t: (B,) int64 timesteps.
             cond: (B, 3, R, C) text; zeros for the unconditional prediction.
             mask: (B, T, 2), nonzero where a person's token is real; padding is not attended to.
-            known: (B, T, 2·seen_features), for each person :meth:`models.known.Known.features` of what is known and,
-                with drafts, of the draft; None if there is neither.
+            known: (B, T, 2·seen_features), for each person :meth:`models.known.Known.features` of what is known and of
+                the draft; None if there is neither.
 
         Returns:
             (B, T, 2F); what stands at padded tokens means nothing.
@@ -133,23 +138,29 @@ class WordDenoiser(InterGenDenoiser):
         if known is not None:
             seen = known.view(b, length, 2, -1).permute(2, 0, 1, 3)
             width = self.known_embed.in_features
-            h = h + self.known_embed(seen[..., :width])
-            if self.draft is not None:
-                into, followed = self.draft(seen[..., width:], emb)
-                h = h + into
+            into, followed = self.draft(seen[..., width:], emb)
+            h = h + self.known_embed(seen[..., :width]) + into
         text = self.text_of_each(cond)
         keep, keep_other = padding(mask)
         for block in self.blocks:
             h = block(h, emb, keep, keep_other, *text)
         return (self.out(h) + followed).permute(1, 2, 0, 3).reshape(b, length, -1)
 
-    def drafted(self, known: Tensor) -> Tensor | None:
-        """See :meth:`models.diffusion.sampling.TwoPersonDenoiser.drafted`."""
-        if self.draft is None:
-            return None
+    def guided(  # type: ignore[override]  # one more input
+        self, x: Tensor, t: Tensor, cond: Tensor, known: Tensor | None = None, *, scale: float = 3.5
+    ) -> Tensor:
+        """As `TwoPersonDenoiser.guided`, and less on what a draft says; ``known`` may have one row."""
+        if known is None:
+            return super().guided(x, t, cond, scale=scale)
+        known = known.expand(len(x), -1, -1)
         width = self.known_embed.in_features
         draft = known.unflatten(-1, (2, -1))[..., width:].unflatten(-1, (-1, KNOWN_FEATURES))
-        return (draft[..., FEATURES : 2 * FEATURES] > 0).flatten(2)  # the masks, see Known.features
+        drafted = (draft[..., FEATURES : 2 * FEATURES] > 0).flatten(2)  # the masks, see Known.features
+
+        def predict(x: Tensor, t: Tensor, known: Tensor, cond: Tensor) -> Tensor:
+            return self(x, t, cond, known=known)
+
+        return classifier_free(predict, x, t, known, cond=cond, scale=scale, drafted=drafted)
 
     @property
     def varying(self) -> dict[str, tuple[int, ...]]:
@@ -176,8 +187,13 @@ class WordDenoiser(InterGenDenoiser):
     def embed(self, t: Tensor, cond: Tensor) -> Tensor:
         """The embedding for AdaLN of timesteps (B,) and the sentences' vectors in text (B, 3, R, C): (2, B, d)."""
         both, a, b = cond[:, :, 0].unbind(1)
+        emb, role = super().embed(t, both), self.role_text(both)
         own = self.person_text(torch.stack([torch.cat([a, b], -1), torch.cat([b, a], -1)]))
-        return super().embed(t, both) + own
+        return torch.stack([emb + role, emb - role]) + own
+
+    def embed_motion(self, people: Tensor) -> Tensor:
+        """See `InterGenDenoiser.embed_motion`."""
+        return super().embed_motion(people) + self.role_embedding[:, None, None]
 
     def text_of_each(self, cond: Tensor) -> tuple[Tensor, Tensor]:
         """Text (B, 3, R, C) as a and as b reads it, (2B, S, C), and which of the S rows are real, (2B, S).

@@ -13,8 +13,7 @@ class MAWGANLossWeights:
     """β₁ to β₄ of eq. 2.11 and λ of eq. 2.5 (section 2.5.2).
 
     ``position`` weighs the mean distance of joints in metres. The thesis has no such loss; its eq. 2.9 does not
-    see a rotation of the whole pose. ``speed`` weighs the difference of each frame's mean speed from the true
-    one, in metres a frame, because an uncertain network predicts too slow a motion.
+    see a rotation of the whole pose.
     """
 
     adversarial: float = 1.0
@@ -23,7 +22,6 @@ class MAWGANLossWeights:
     bone: float = 10.0
     gradient_penalty: float = 10.0
     position: float = 0.0
-    speed: float = 0.0
 
 
 def gradient_penalty(critic: nn.Module, real: Tensor, made: Tensor, share: Tensor) -> Tensor:
@@ -58,17 +56,6 @@ def reconstruction_loss(made: Tensor, real: Tensor) -> Tensor:
 def position_loss(made: Tensor, real: Tensor) -> Tensor:
     """Mean distance of joints (B, T, J, 3) in metres, which is what MPJPE measures."""
     return ((made - real).square().sum(-1) + 1e-10).sqrt().mean()
-
-
-def speed_loss(made: Tensor, real: Tensor, last: Tensor) -> Tensor:
-    """Difference of the mean speeds (eq. 2.13) of predicted and true frames, in metres a frame.
-
-    Args:
-        made, real: (B, T, J, 3) metres.
-        last: (B, 1, J, 3) the pose before.
-    """
-    speeds = [(torch.cat([last, x], dim=1).diff(dim=1).square().sum(-1) + 1e-10).sqrt().mean(2) for x in (made, real)]
-    return (speeds[0] - speeds[1]).mean(0).abs().mean()
 
 
 def gram_distance(p: Tensor, q: Tensor) -> Tensor:

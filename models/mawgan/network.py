@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import Any
 
 import torch
 from torch import Tensor, nn
@@ -58,11 +57,6 @@ class MAWGANConfig:
     critic_stride: int = 2
     linear: bool = False
     length: bool = False
-
-    @classmethod
-    def from_dict(cls, values: dict[str, Any]) -> MAWGANConfig:
-        """The config that ``config.json`` holds as a dictionary."""
-        return cls(**values | {key: tuple(values[key]) for key in ("channels", "critic")})
 
     @property
     def image(self) -> tuple[int, int]:
@@ -140,6 +134,7 @@ class PredictiveMAWGAN(nn.Module):
     ``past_mean`` (past, D) and ``future_mean`` (future + 1, D) are Karcher means of training curves.
     """
 
+    sizes = MAWGANConfig
     past_mean: Tensor
     future_mean: Tensor
 

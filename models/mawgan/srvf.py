@@ -106,14 +106,12 @@ def log_map(mean: Tensor, q: Tensor) -> Tensor:
     return ratio[..., None, None] * across
 
 
-def karcher_mean(q: Tensor, *, step: float = 0.9, tolerance: float = 1e-5, max_steps: int = 200) -> Tensor:
+def karcher_mean(q: Tensor, *, tolerance: float = 1e-5) -> Tensor:
     """The point whose summed squared arcs to all others are least (eq. 2.6), by Algorithm 1.
 
     Args:
         q: (M, N, D) points of the sphere, within a half-sphere.
-        step: ε of the algorithm.
         tolerance: the algorithm ends where the mean direction is shorter.
-        max_steps: or after so many steps.
 
     Returns:
         (N, D) of norm 1.
@@ -121,9 +119,9 @@ def karcher_mean(q: Tensor, *, step: float = 0.9, tolerance: float = 1e-5, max_s
     start = q.mean(dim=0)
     size = norm(start)
     mean = start / size if float(size) > _NEAR_POLE else q[0]
-    for _ in range(max_steps):
+    for _ in range(200):
         direction = to_tangent(mean, log_map(mean, q).mean(dim=0))
-        mean = exp_map(mean, step * direction)
+        mean = exp_map(mean, 0.9 * direction)
         mean = mean / norm(mean)
         if float(norm(direction)) < tolerance:
             break

@@ -68,6 +68,7 @@ class MotionMLP(nn.Module):
     coefficients; they are measured on the training data and travel with the weights.
     """
 
+    sizes = MotionMLPConfig
     mean: Tensor
     std: Tensor
     scale: Tensor

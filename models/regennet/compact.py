@@ -16,27 +16,26 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.diffusion import classifier_free, denoise, guide, make_scheduler
-from models.intergen.compact import Touch, TouchReader, as_touches
+from models.intergen.compact import Touch, TouchReader, read_touches
 from models.layers import sinusoids_at
-from models.motion_tokens import FEATURES, NUM_JOINTS, TokenLayout, decode
+from models.motion_tokens import FEATURES, NUM_JOINTS, TokenLayout, decode, pose_rows
 from models.regennet.network import (
     ROW_WIDTH,
-    CausalPass,
     ReGenNet,
     ReGenNetConfig,
+    Stream,
     StreamError,
     attend_to_one,
     decoder_layer,
 )
 from models.text import TextConditioner, TextConditionerConfig
-from models.weights_io import WeightsFolder, load_network
+from models.weights_io import common
 
 LEAD = 3
 """Control points beyond an interval's first that its frames depend on."""
@@ -62,9 +61,6 @@ class CompactReGenNetConfig:
     frames_per_knot: int = 4
     touches: tuple[Touch, ...] = ()
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "touches", as_touches(self.touches))
-
 
 class CompactReGenNet(nn.Module):
     """Denoiser, text conditioner and normalisers.
@@ -73,6 +69,7 @@ class CompactReGenNet(nn.Module):
     (132,) those of :meth:`actor_rows`.
     """
 
+    sizes = CompactReGenNetConfig
     mean: Tensor
     std: Tensor
     actor_mean: Tensor
@@ -86,12 +83,9 @@ class CompactReGenNet(nn.Module):
             ReGenNetConfig(
                 rows=-(-FEATURES // ROW_WIDTH),
                 actor_rows=ACTOR_FEATURES // ROW_WIDTH,
-                latent_dim=config.latent_dim,
-                ff_size=config.ff_size,
-                num_layers=config.num_layers,
-                num_heads=config.num_heads,
                 online=True,
                 dropout=0.0,
+                **common(config, ReGenNetConfig),
             )
         )
         self.condition = nn.Linear(config.cond_dim, config.latent_dim, bias=False)
@@ -108,9 +102,7 @@ class CompactReGenNet(nn.Module):
 
     def touches(self, condition: Tensor) -> list[Touch]:
         """The joints that should touch, for each condition vector (B, cond_dim); () if none should."""
-        if self.touch_reader is None:
-            return [()] * len(condition)
-        return self.touch_reader.read(condition)
+        return read_touches(self.touch_reader, condition)
 
     # ---- motion ----------------------------------------------------------------------------------
 
@@ -205,37 +197,26 @@ class CompactReGenNet(nn.Module):
         scale = scale if condition.any() else 1.0  # without words both halves are the same
         return classifier_free(predict, x, t, actor, begin, cond=condition, scale=scale)
 
-    def stream(
-        self,
-        condition: Tensor,
-        *,
-        steps: int = 5,
-        scale: float = 1.0,
-        max_frames: int = 900,
-        begin: Tensor | None = None,
-    ) -> CompactStream:
-        """Open a stream that reacts to an actor frame by frame; condition (B, cond_dim), B samples, and
-        begin (B, 67) of :meth:`begin_row` where the reactor's first pose is given."""
-        return CompactStream(self, condition, steps=steps, scale=scale, max_frames=max_frames, begin=begin)
-
-
-def pose_rows(positions: Tensor) -> Tensor:
-    """(…, 22, 3) → (…, 66): the pelvis, and the other joints relative to it."""
-    root = positions[..., :1, :]
-    return torch.cat([root, positions[..., 1:, :] - root], dim=-2).flatten(-2)
-
 
 def widen(x: Tensor) -> Tensor:
     """(…, 70) → (…, 72): whole rows of six."""
     return F.pad(x, (0, -FEATURES % ROW_WIDTH))
 
 
-class CompactStream:
-    """DDIM sampling of a reaction while the actor moves: one actor frame in, one reaction frame out.
+class CompactStream(Stream):
+    """One actor frame in, one reaction frame out.
 
     Rows are denoised at every ``frames_per_knot``-th frame, the frames between are read off the spline, so
     most frames cost next to nothing and the others the same whatever came before: attention reaches back
     over a fixed window.
+
+    Args:
+        model: the network.
+        condition: (B, cond_dim) of B samples.
+        steps: DDIM steps.
+        scale: of the guidance.
+        max_frames: how many frames there can be.
+        begin: (B, 67) of :meth:`CompactReGenNet.begin_row` where the reactor's first pose is given.
     """
 
     def __init__(
@@ -243,32 +224,26 @@ class CompactStream:
         model: CompactReGenNet,
         condition: Tensor,
         *,
-        steps: int,
-        scale: float,
-        max_frames: int,
+        steps: int = 5,
+        scale: float = 1.0,
+        max_frames: int = 900,
         begin: Tensor | None = None,
     ) -> None:
         if max_frames < 1:
             raise StreamError("A stream needs at least one frame: give max_frames 1 or more.")
-        self.model, self.scale, self.max_frames = model, scale, max_frames
-        self.samples = condition.shape[0]
+        self.model, self.scale = model, scale
         self.guided = scale != 1 and bool(condition.any())
         if self.guided:
             condition = torch.cat([condition, torch.zeros_like(condition)])
             begin = None if begin is None else torch.cat([begin, begin])
-        self.scheduler = make_scheduler("ddim", steps, spacing="top")
-        rows = model.num_rows(max_frames) + 1
-        with torch.no_grad():
-            self.passes = {
-                int(t): CausalPass(
-                    model.network,
-                    model.embed(t.expand(len(condition)), condition, begin, causal=True),
-                    rows,
-                    window=model.config.window,
-                )
-                for t in self.scheduler.timesteps
-            }
-        self.length = 0
+        super().__init__(
+            model.network,
+            lambda t: model.embed(t.expand(len(condition)), condition, begin, causal=True),
+            make_scheduler("ddim", steps, spacing="top"),
+            max_frames=max_frames,
+            rows=model.num_rows(max_frames) + 1,
+            window=model.config.window,
+        )
         self._last: Tensor | None = None
         self._recent: list[Tensor] = []
         self._interval: tuple[Tensor, Tensor]  # the frames up to the next row, set with the first frame
@@ -286,9 +261,7 @@ class CompactStream:
             Positions (B, 22, 3) in metres and contact scores (B, 4) of the feet. Raises StreamError after
             ``max_frames`` frames.
         """
-        if self.length == self.max_frames:
-            raise StreamError(f"The stream was opened for {self.max_frames} frames: open another.")
-        interval, within = divmod(self.length, self.model.config.frames_per_knot)
+        interval, within = divmod(self.count(), self.model.config.frames_per_knot)
         if within == 0:
             pose = pose_rows(actor)
             last = pose if self._last is None else self._last
@@ -300,7 +273,6 @@ class CompactStream:
             self._last = pose
             control = torch.stack(self._recent, dim=1) * self.model.std + self.model.mean
             self._interval = decode(control, self.model.layout)
-        self.length += 1
         positions, contacts = self._interval
         return positions[:, within], contacts[:, within]
 
@@ -317,8 +289,3 @@ class CompactStream:
             return guide(conditional, unconditional, self.scale)
 
         return denoise(predict, x, self.scheduler)
-
-
-def load_folder(folder: Path) -> tuple[CompactReGenNet, WeightsFolder]:
-    """See :func:`models.weights_io.load_network`."""
-    return load_network(folder, lambda sizes: CompactReGenNet(CompactReGenNetConfig(**sizes)))

@@ -23,6 +23,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.diffusion import classifier_free, denoise, make_scheduler
+from models.diffusion.schedule import Scheduler
 from models.errors import Released
 from models.layers import TimestepEmbedding, sinusoids
 from motion.errors import InputError
@@ -124,14 +125,6 @@ class ReGenNet(nn.Module):
         given = torch.zeros(x.shape[0], dtype=torch.bool, device=x.device)  # which samples leave the action out
         return classifier_free(self, x, t, actor, action, cond=given, nothing=~given, scale=scale)
 
-    def stream(
-        self, *, steps: int = 5, batch: int = 1, action: Tensor | None = None, max_frames: int = 300
-    ) -> ReactionStream:
-        """Open a stream that reacts to an actor frame by frame; online networks only."""
-        if not self.config.online:
-            raise StreamError("An offline ReGenNet needs the whole motion: choose online weights to stream.")
-        return ReactionStream(self, steps=steps, batch=batch, action=action, max_frames=max_frames)
-
 
 Attend = Callable[[Tensor, Tensor, Tensor], Tensor]
 """Queries, keys and values (B, heads, T, d / heads) → what the queries see, in the shape of the queries."""
@@ -200,28 +193,64 @@ def attend_to_one(attention: nn.MultiheadAttention, token: Tensor) -> Tensor:
     return attention.out_proj(value)
 
 
-class ReactionStream:
-    """DDIM sampling of a reaction while the actor moves: one actor frame in, one reaction frame out.
+class Stream:
+    """DDIM sampling of a reaction while the actor moves, for which every step keeps its own :class:`CausalPass`.
 
-    Every DDIM step keeps its own `CausalPass`. Since no frame looks ahead, the frames equal those of sampling
-    the whole motion at once from the same noise. A frame costs `steps` one-token passes whatever came before;
-    only the attention over past frames, the smaller part, grows with their number.
+    Args:
+        network: an online network.
+        embed: gives the condition (B, d) of a pass at a timestep.
+        scheduler: of the steps.
+        max_frames: how many frames there can be.
+        rows: how many the passes are of.
+        window: see :class:`CausalPass`.
+
+    Attributes:
+        length: frames so far.
     """
 
-    def __init__(self, network: ReGenNet, *, steps: int, batch: int, action: Tensor | None, max_frames: int) -> None:
-        self.network, self.batch, self.max_frames = network, batch, max_frames
-        self.device = network.fuse_process.weight.device
-        self.scheduler = make_scheduler("ddim", steps, device=self.device)
+    def __init__(
+        self,
+        network: ReGenNet,
+        embed: Callable[[Tensor], Tensor],
+        scheduler: Scheduler,
+        *,
+        max_frames: int,
+        rows: int,
+        window: int | None = None,
+    ) -> None:
+        self.scheduler, self.max_frames, self.length = scheduler, max_frames, 0
         with torch.no_grad():
-            self.passes = {
-                int(t): CausalPass(network, network.embed(t.expand(batch), action, False), max_frames)
-                for t in self.scheduler.timesteps
-            }
+            self.passes = {int(t): CausalPass(network, embed(t), rows, window=window) for t in scheduler.timesteps}
 
-    @property
-    def length(self) -> int:
-        """Frames so far."""
-        return next(iter(self.passes.values())).length
+    def count(self) -> int:
+        """Counts a frame and gives its number, from 0; raises StreamError after ``max_frames`` frames."""
+        if self.length == self.max_frames:
+            raise StreamError(f"The stream was opened for {self.max_frames} frames: open another.")
+        self.length += 1
+        return self.length - 1
+
+
+class ReactionStream(Stream):
+    """One actor frame in, one reaction frame out, of an online network.
+
+    Since no frame looks ahead, the frames equal those of sampling the whole motion at once from the same noise. A
+    frame costs `steps` one-token passes whatever came before; only the attention over past frames, the smaller part,
+    grows with their number.
+    """
+
+    def __init__(
+        self, network: ReGenNet, *, steps: int = 5, batch: int = 1, action: Tensor | None = None, max_frames: int = 300
+    ) -> None:
+        if not network.config.online:
+            raise StreamError("An offline ReGenNet needs the whole motion: choose online weights to stream.")
+        scheduler = make_scheduler("ddim", steps, device=network.fuse_process.weight.device)
+        super().__init__(
+            network,
+            lambda t: network.embed(t.expand(batch), action, False),
+            scheduler,
+            max_frames=max_frames,
+            rows=max_frames,
+        )
 
     @torch.no_grad()
     def step(self, actor: Tensor, *, noise: Tensor) -> Tensor:
@@ -234,8 +263,7 @@ class ReactionStream:
         Returns:
             (B, R, 6). Raises StreamError after `max_frames` frames.
         """
-        if self.length == self.max_frames:
-            raise StreamError(f"The stream was opened for {self.max_frames} frames: open another.")
+        self.count()
         seen = actor.flatten(1)
 
         def predict(x: Tensor, t: Tensor) -> Tensor:

@@ -21,6 +21,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.errors import count_layers
+from models.layers import encoder_layer
 from models.weights_io import mapped_tensors
 from motion.errors import InputError
 
@@ -199,14 +200,8 @@ class TextConditioner(nn.Module):
         self.config = config = config or TextConditionerConfig()
         self.project = nn.Linear(config.token_width, config.latent_dim)
         self.query = nn.Parameter(0.02 * torch.randn(config.latent_dim))
-        layer = nn.TransformerEncoderLayer(
-            config.latent_dim,
-            config.num_heads,
-            config.ff_size,
-            dropout=config.dropout,
-            activation="gelu",
-            batch_first=True,
-        )
+        sizes = (config.latent_dim, config.num_heads, config.ff_size, config.dropout)
+        layer = encoder_layer(*sizes, norm_first=False)
         self.encoder = nn.TransformerEncoder(layer, config.num_layers, enable_nested_tensor=False)
         self.norm = nn.LayerNorm(config.latent_dim)
 

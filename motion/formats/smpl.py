@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
@@ -21,6 +20,7 @@ from motion.kinematics import forward_kinematics
 from motion.looks import size_of
 from motion.sizes import of_adults
 from motion.skeleton import SMPL22
+from motion.vectors import rotation_vectors, rotations_by
 
 from .files import check_duration, check_smpl, frame_rate, no_rate, numbers
 from .recording import Recording
@@ -120,9 +120,8 @@ def _vectors(rotations: Array | None, label: str) -> Array:
         vectors = np.empty(matrices.shape[:3], dtype=np.float32)
         try:
             for first in range(0, len(matrices), _AT_ONCE):
-                part = matrices[first : first + _AT_ONCE]
-                turns = scipy.spatial.transform.Rotation.from_matrix(part.reshape(-1, 3, 3))
-                vectors[first : first + _AT_ONCE] = turns.as_rotvec().reshape(part.shape[:3])
+                part = slice(first, first + _AT_ONCE)
+                vectors[part] = rotation_vectors(matrices[part])
         except ValueError:
             raise InputError(f"{label} holds matrices that are no rotations: save it again.") from None
         found = vectors
@@ -134,8 +133,7 @@ def _posed(poses: Array, trans: Array) -> Array:
     positions = np.empty((len(poses), SMPL22.num_joints, 3), dtype=np.float32)
     for first in range(0, len(poses), _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
-        vectors = scipy.spatial.transform.Rotation.from_rotvec(poses[part].reshape(-1, 3))
-        turns = vectors.as_matrix().reshape(-1, SMPL22.num_joints, 3, 3)
+        turns = rotations_by(poses[part].reshape(-1, SMPL22.num_joints, 3))
         positions[part] = forward_kinematics(turns, trans[part] + PELVIS)
     return positions
 
@@ -160,9 +158,8 @@ def smpl_bytes(clip: Clip) -> bytes:
     check_smpl(clip, SUFFIX)
     rotations, _ = rigged(clip)
     rotations[:, 0] = _Z_UP_TO_Y_UP.T @ rotations[:, 0]
-    vectors = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec()
     poses = np.zeros((clip.num_frames, _POSES))
-    poses[:, :_BODY] = vectors.reshape(clip.num_frames, _BODY)
+    poses[:, :_BODY] = rotation_vectors(rotations).reshape(clip.num_frames, _BODY)
     buffer = io.BytesIO()
     np.savez_compressed(
         buffer,

@@ -6,7 +6,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from motion.smoothing import smoothstep
-from motion.vectors import FLAT, Array, square_frame, unit
+from motion.vectors import FLAT, Array, rotations_by, slerp, square_frame, unit
 
 from .hands import Hands, level, smoothed
 from .thing import Mesh
@@ -109,7 +109,7 @@ class Course:
         half = max(seconds * self.fps, 0.5)
         share = smoothstep((np.arange(len(self.places)) - frame + half) / (2 * half))
         self.places += share[:, None] * (track[0] - self.places)
-        self.rotations = between(self.rotations, track[1], share)
+        self.rotations = slerp(self.rotations, track[1], share)
 
     def throw(self, start: int, stop: int, goal: Array) -> None:
         """It flies along a parabola from where it is at ``start`` to ``goal`` (3,) at ``stop``, turning forward."""
@@ -120,9 +120,7 @@ class Course:
         speed = (goal - begin) / seconds + np.array([0.0, GRAVITY * seconds / 2, 0.0])
         way = begin + now[:, None] * speed - np.array([0.0, GRAVITY / 2, 0.0]) * now[:, None] ** 2
         axis = unit(np.cross(_UP, goal - begin))
-        spin = scipy.spatial.transform.Rotation.from_rotvec(
-            axis * (2 * np.pi * now / max(seconds, 0.8))[:, None]
-        ).as_matrix()
+        spin = rotations_by(axis * (2 * np.pi * now / max(seconds, 0.8))[:, None])
         self.rotations[start : start + len(now)] = spin @ self.rotations[start]
         self.places[start : start + len(now)] = way
         self.places[start + len(now) :] = way[-1]
@@ -140,9 +138,7 @@ class Course:
         drop = np.maximum(begin[1] - radius - GRAVITY / 2 * now**2, 0.0)
         self.places[start:] = begin * FLAT + along[:, None] * ahead
         self.places[start:, 1] = radius + drop
-        spin = scipy.spatial.transform.Rotation.from_rotvec(
-            np.cross(_UP, ahead) * (along / radius)[:, None]
-        ).as_matrix()
+        spin = rotations_by(np.cross(_UP, ahead) * (along / radius)[:, None])
         self.rotations[start:] = spin @ self.rotations[start]
 
     def bounce(self, under: Array, start: int, stop: int, radius: float) -> None:
@@ -185,13 +181,7 @@ class Course:
         fallen[:, 1] += share**2 * (rest[0][:, 1] - fallen[:, 1])
         held = np.tile(self.rotations[frame], (count, 1, 1))
         self.places[frame:] = fallen[frame:]
-        self.rotations[frame:] = between(held, rest[1], eased)[frame:]
-
-
-def between(one: Array, other: Array, share: Array) -> Array:
-    """(T, 3, 3) rotations ``share`` (T,) of the way from one track to another, along the shortest turn."""
-    turn = scipy.spatial.transform.Rotation.from_matrix(np.swapaxes(one, 1, 2) @ other).as_rotvec()
-    return one @ scipy.spatial.transform.Rotation.from_rotvec(share[:, None] * turn).as_matrix()
+        self.rotations[frame:] = slerp(held, rest[1], eased)[frame:]
 
 
 def at_rest(kind: str, mesh: Mesh, place: Array, ahead: Array, frames: int) -> Track:

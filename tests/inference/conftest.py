@@ -15,10 +15,10 @@ from webdemo.inference.engine import Engine
 CAPTIONS = ("Two people shake hands.", "One person waves.", "They walk away from each other.")
 
 
-def tiny_weights(folder: Path, *, words: bool) -> Path:
+def tiny_weights(folder: Path) -> Path:
     torch.manual_seed(0)
     sizes = {"latent_dim": 32, "ff_size": 32, "num_layers": 2, "num_heads": 2, "cond_dim": 64, "text_layers": 1}
-    model = CompactInterGen(CompactConfig(**sizes, words=words, drafts=words))
+    model = CompactInterGen(CompactConfig(**sizes))
     for parameter in model.parameters():  # the zero-initialised layers would hide what the input does
         torch.nn.init.normal_(parameter, std=0.05)
     rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
@@ -33,19 +33,7 @@ def tiny_weights(folder: Path, *, words: bool) -> Path:
 
 @pytest.fixture(scope="session")
 def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tiny_weights(tmp_path_factory.mktemp("weights"), words=False)
-
-
-@pytest.fixture(scope="session")
-def reading_engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
-    """With a network that reads words and drafts, and sees what is known."""
-    return Engine(tiny_weights(tmp_path_factory.mktemp("reading"), words=True))
-
-
-@pytest.fixture(params=["engine", "reading_engine"])
-def either_engine(request: pytest.FixtureRequest) -> Engine:
-    """Each of the two networks."""
-    return request.getfixturevalue(request.param)
+    return tiny_weights(tmp_path_factory.mktemp("weights"))
 
 
 @pytest.fixture(scope="session")

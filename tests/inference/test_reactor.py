@@ -9,8 +9,8 @@ import pytest
 import torch
 
 from models.motion_tokens import FEATURES, encode
-from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load_folder
-from models.weights_io import save_network
+from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, CompactStream
+from models.weights_io import load_network, save_network
 from motion import SMPL22, InputError
 from webdemo.inference import ReactRequest, Result
 from webdemo.inference.engine import Engine
@@ -45,7 +45,7 @@ def engine(folder: Path) -> Engine:
 
 @pytest.fixture(scope="module")
 def network(folder: Path) -> CompactReGenNet:
-    return load_folder(folder / "regennet")[0]
+    return load_network(folder / "regennet", CompactReGenNet)[0]
 
 
 REQUEST = ReactRequest(actor=waver(2.5), model="regennet", mode="online", steps=3, seed=4)
@@ -111,7 +111,7 @@ def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNe
     rows = network.num_rows(frames)
     noise = torch.randn(rows, 1, FEATURES, generator=torch.Generator().manual_seed(1))
     condition = torch.randn(1, 32, generator=torch.Generator().manual_seed(2))
-    stream = network.stream(condition, steps=3, max_frames=frames)
+    stream = CompactStream(network, condition, steps=3, max_frames=frames)
     left = iter(noise)
     streamed = torch.stack([stream.step(frame, noise=left)[0][0] for frame in actor])
     seen = network.actor_rows(actor[None])
@@ -181,7 +181,7 @@ def test_words_that_ask_for_a_touch_reach_the_damping(
     engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     hands = (("right_wrist", "right_wrist"),)
-    network = load_folder(engine.weights / "regennet")[0]
+    network = load_network(engine.weights / "regennet", CompactReGenNet)[0]
     asking = CompactReGenNet(replace(network.config, touches=(hands,)))
     asking.load_state_dict(network.state_dict(), strict=False)
     assert asking.touch_reader is not None

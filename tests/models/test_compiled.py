@@ -24,8 +24,6 @@ SIZES: dict[str, Any] = {
     "num_layers": 1,
     "num_heads": 2,
     "cond_dim": 16,
-    "role_embedding": True,
-    "role_text": True,
 }
 
 

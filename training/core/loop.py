@@ -43,12 +43,6 @@ def asked_to_end() -> Iterator[list[int]]:
             signal.signal(number, handler)
 
 
-def warm_cosine(peak: float, step: int, *, warmup: int, steps: int) -> float:
-    """The learning rate at ``step`` of ``steps``: a linear warm-up, then a cosine to 2 % of the peak."""
-    warm = min(1.0, (step + 1) / warmup)
-    return peak * warm * (0.51 + 0.49 * math.cos(math.pi * min(1.0, step / steps)))
-
-
 class Loop(ABC):
     """A run that counts its steps and can be stopped and saved after any of them.
 
@@ -111,15 +105,21 @@ class Loop(ABC):
     def train_step(self) -> dict[str, float]:
         """Takes one optimiser step and counts it; returns the loss terms."""
 
+    def rate(self) -> float:
+        """The learning rate of this step: a linear warm-up, then a cosine to 2 % of the peak."""
+        s = self.settings
+        warm = min(1.0, (self.step + 1) / s.warmup)
+        return s.learning_rate * warm * (0.51 + 0.49 * math.cos(math.pi * min(1.0, self.step / s.steps)))
+
     def step_on(self, terms: dict[str, Tensor], *, clip: float = 1.0) -> dict[str, float]:
         """Takes an optimiser step that lowers the sum of the loss terms, and counts it; the terms and their sum.
 
-        The learning rate is that of :func:`warm_cosine`, and the joint norm of all gradients is clipped to ``clip``.
+        The learning rate is that of :meth:`rate`, and the joint norm of all gradients is clipped to ``clip``.
         """
-        s, values = self.settings, torch.stack(list(terms.values()))
+        values = torch.stack(list(terms.values()))
         total = values.sum()
         for group in self.optimizer.param_groups:
-            group["lr"] = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
+            group["lr"] = self.rate()
         self.optimizer.zero_grad(set_to_none=True)
         total.backward()
         nn.utils.clip_grad_norm_([p for p in self.model.parameters() if p.requires_grad], clip)

@@ -35,6 +35,10 @@ OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "pairs": ("--data", _NEEDED | {"help": "folder that holds sbu and k3hi"}),
     "scenes": ("--scenes", _NEEDED | {"help": "file of `python -m training.prepare`"}),
     "seed": ("--seed", {"type": int, "default": 0}),
+    "share": (
+        "--share",
+        {"type": float, "default": 1.0, "help": "the run's share of the exported weights; the rest is of --init (1)"},
+    ),
     "steps": ("--steps", {"type": int, "default": 25, "help": "DDIM steps (25)"}),
     "table": ("--table", _FOLDER | {"help": "Markdown file for the table, which is printed too"}),
     "threads": ("--threads", {"type": int, "help": "of torch on the CPU (as many as there are cores)"}),

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
-from scipy.spatial.transform import Rotation
 
 from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import pivoting, stepping
@@ -20,7 +19,7 @@ from motion.kinematics import fit_rotations, forward_kinematics, global_rotation
 from motion.skeleton import SMPL22
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
-from motion.vectors import wrapped
+from motion.vectors import slerp, wrapped
 
 Array = NDArray[np.floating]
 FPS = 30
@@ -61,14 +60,6 @@ class Motion:
         """(T,) unwrapped heading of the hips in radians."""
         across = self.rotations[:, 0, :, 0]
         return np.unwrap(np.arctan2(-across[:, 2], across[:, 0]))
-
-
-def slerp(first: Array, second: Array, weight: Array) -> Array:
-    """Rotations (…, 3, 3) a share ``weight`` (broadcast over the leading axes) of the way to ``second``."""
-    relative = (np.swapaxes(first, -1, -2) @ second).reshape(-1, 3, 3)
-    share = np.broadcast_to(weight, first.shape[:-2]).reshape(-1, 1)
-    part = Rotation.from_rotvec(share * Rotation.from_matrix(relative).as_rotvec()).as_matrix()
-    return first @ part.reshape(first.shape)
 
 
 def ease(steps: int) -> Array:

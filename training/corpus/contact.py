@@ -11,12 +11,11 @@ from collections.abc import Mapping
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
-from scipy.spatial.transform import Rotation
 
 from motion.limbs import limb_length, over_planted_feet, solve_two_bones
 from motion.skeleton import SMPL22
 from motion.smoothing import minimum_jerk
-from motion.vectors import FLAT, left_of, unit
+from motion.vectors import FLAT, left_of, rotations_by, unit
 
 from .compose import ARMS, FPS, Array
 
@@ -93,7 +92,7 @@ def meeting(a: Array, b: Array, side_a: str, side_b: str, *, height: float, apar
 def bend(positions: Array, turn: Array, *, joints: tuple[int, ...] = SPINE) -> Array:
     """Bends the spine by a rotation vector (T, 3) in radians against the world, shared between ``joints``."""
     positions = positions.copy()
-    matrices = Rotation.from_rotvec(np.asarray(turn) / len(joints)).as_matrix()
+    matrices = rotations_by(np.asarray(turn) / len(joints))
     for joint in joints:
         moved = _DESCENDANTS[joint]
         pivot = positions[:, joint : joint + 1]

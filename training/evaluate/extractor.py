@@ -17,7 +17,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.layers import sinusoids
+from models.layers import encoder_layer, sinusoids
 from models.motion_tokens import FEATURES, TokenLayout, encode, foot_contacts, pack
 from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
 from motion import InputError
@@ -26,7 +26,7 @@ from training.core.checkpoint import read_tensors, write_tensors
 from training.core.loop import mixed_precision
 from training.core.shell import add_options, exit_code
 from training.prepare import Scenes, load
-from training.trainers.intergen_data import Data
+from training.trainers.intergen_data import OneSentence
 from training.trainers.intergen_data import Settings as DataSettings
 
 
@@ -57,15 +57,7 @@ class Extractor(nn.Module):
         self.settings, self.layout = settings, layout
         self.embed = nn.Linear(2 * layout.token_features, settings.width)
         self.query = nn.Parameter(0.02 * torch.randn(settings.width))
-        layer = nn.TransformerEncoderLayer(
-            settings.width,
-            settings.num_heads,
-            4 * settings.width,
-            dropout=settings.dropout,
-            activation="gelu",
-            batch_first=True,
-            norm_first=True,
-        )
+        layer = encoder_layer(settings.width, settings.num_heads, 4 * settings.width, settings.dropout)
         self.encoder = nn.TransformerEncoder(layer, settings.num_layers, enable_nested_tensor=False)
         self.head = nn.Sequential(nn.LayerNorm(settings.width), nn.Linear(settings.width, settings.features))
         self.conditioner = TextConditioner(
@@ -114,7 +106,7 @@ def contrast(motion: Tensor, text: Tensor, temperature: Tensor, same: Tensor) ->
 def fit(scenes: Scenes, settings: Settings, cache: Path, *, device: str = "cpu") -> Extractor:
     """Trains an extractor on the training split; the same seed and data give the same features."""
     torch.manual_seed(settings.seed)
-    data = Data(scenes, DataSettings(batch=settings.batch, seed=settings.seed, words=False), cache, device)
+    data = OneSentence(scenes, DataSettings(batch=settings.batch, seed=settings.seed), cache, device)
     model = Extractor(settings, scenes.layout).to(device)
     model.mean.copy_(data.mean)
     model.std.copy_(data.std)

@@ -9,36 +9,37 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import torch
 from torch import Tensor
 
 from models.diffusion import NoiseSchedule
-from models.intergen.compact import CompactInterGen, load_folder
+from models.intergen.compact import CompactInterGen
 from models.intergen.losses import simple_loss
 from models.known import Hold
+from models.weights_io import load_network
 from motion import InputError
 from training.core import checkpoint
 from training.core.shell import add_options, exit_code
 from training.prepare import Scenes, load
 from training.trainers.given import Shares, known_parts
 from training.trainers.intergen import condition, new_model
-from training.trainers.intergen_data import Data, Settings, seeded, settings_of
+from training.trainers.intergen_data import Data, OneSentence, Settings, seeded, settings_of
 from training.trainers.scenes import feature_weights
 
 TIMESTEPS = (200, 500, 800, 900, 950, 980, 999)
-NOTHING = Shares(person=0, past=0, span=0, poses=0, path=0, joints=0, more=0)
+NOTHING = Shares(*[0.0] * len(fields(Shares)))
 GIVEN = {"nothing": NOTHING} | {
-    kind: replace(NOTHING, **{kind: 1.0}) for kind in ("person", "past", "span", "poses", "path", "staged")
+    kind: replace(NOTHING, **{kind: 1.0}) for kind in ("person", "past", "span", "poses", "path", "places")
 }
 
 
 def load_model(path: Path, data: Data) -> CompactInterGen:
     """The network of a weights folder, or the averaged one of a training's folder."""
     if (path / "config.json").exists():
-        return load_folder(path)[0]
+        return load_network(path, CompactInterGen)[0]
     last = path / "last.safetensors"
     model = new_model(settings_of(last), data)
     checkpoint.restore_part(last, "ema", model)
@@ -58,12 +59,12 @@ def errors(model: CompactInterGen, data: Data, kind: str, batches: int) -> Tenso
         frames = batch.frame_mask.sum(1).int().tolist()
         known = known_parts(model.control(batch.x0), frames, [0] * len(frames), layout, GIVEN[kind], seeded(step, 1))
         hold = None if known is None else Hold(known, layout, model.mean, model.std)
-        seen = {"known": hold.features} if hold is not None and model.reads_known else {}
+        seen = model.shown(None if hold is None else hold.features)
         noise = torch.randn(batch.x0.shape, generator=seeded(step, 2))
         for i, timestep in enumerate(TIMESTEPS):
             t = torch.full((len(batch.x0),), timestep)
             xt = schedule.q_sample(batch.x0, t, noise)
-            made = model.denoiser(xt if hold is None else hold(xt), t, cond, batch.mask, **seen)
+            made = model.denoiser(xt if hold is None else hold(xt), t, cond, batch.mask, seen)
             made = made if hold is None else hold(made)
             people = [x.view(*x.shape[:2], 2, -1) * weights for x in (made, batch.x0)]
             total[i] += simple_loss(*people, batch.mask)
@@ -91,10 +92,10 @@ def main(argv: list[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> None:
     scenes = of_test_split(load(options.scenes))
-    settings = Settings(batch=16, cond_drop_prob=0.0, continued=0.0, words=options.alone)
+    settings = Settings(batch=16, cond_drop_prob=0.0, continued=0.0)
     if len(scenes.rows) < settings.batch:
         raise InputError(f"The test split holds {len(scenes.rows)} scenes: build a corpus with 16 or more.")
-    data = Data(scenes, settings, options.cache, "cpu")
+    data = (Data if options.alone else OneSentence)(scenes, settings, options.cache, "cpu")
     for path in options.models:
         model = load_model(path, data)
         for kind in options.given:

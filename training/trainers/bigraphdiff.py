@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -21,13 +20,14 @@ from torch import Tensor
 from models.bigraphdiff.compact import CompactBiGraphDiff, CompactBiGraphDiffConfig
 from models.intergen.compact import Touch
 from models.intergen.losses import LossWeights
-from models.weights_io import save_network
+from models.weights_io import common, save_network
 from motion import InputError
 from training.core.loop import mixed_precision
 from training.core.shell import train
 from training.corpus.cues import class_of
 from training.prepare import Scenes, load
-from training.trainers import intergen_data
+from training.trainers.intergen_data import OneSentence
+from training.trainers.intergen_data import Settings as InterGenSettings
 from training.trainers.scenes import Drawn, DuetTrainer
 from training.trainers.touch import touch_of
 
@@ -61,7 +61,7 @@ class Settings:
     t_bar: float = 0.7
     noisiest: float = 0.4
     seed: int = 0
-    weights: LossWeights = field(default_factory=lambda: intergen_data.Settings().weights)
+    weights: LossWeights = field(default_factory=lambda: InterGenSettings().weights)
 
     def __post_init__(self) -> None:
         if self.latent_dim % 16 or self.latent_dim % self.num_heads:
@@ -100,19 +100,16 @@ def labels_of(scenes: Scenes) -> tuple[tuple[str, ...], tuple[Touch, ...]]:
     return tuple(sorted(counts)), tuple(touches)
 
 
-class Data(intergen_data.Data):
+class Data(OneSentence):
     """Batches as :mod:`training.trainers.intergen` draws them, conditioned on their class."""
 
     def __init__(self, scenes: Scenes, settings: Settings, device: str) -> None:
         super().__init__(scenes, settings, Path(), device, captions=False)
         self.names, self.touches = labels_of(scenes)
 
-    def sentences(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[list[str], list[bool]]:
-        """The class as the joint condition, nothing for each person alone, and whether it is read."""
-        return [class_of(row), "", ""], [draw[0] >= self.settings.cond_drop_prob, False, False]
-
-    def continued(self, row: dict[str, Any], draw: Sequence[float]) -> None:
-        """No scene is cut: its class is that of the whole."""
+    def caption(self, row: dict[str, Any], draw: float) -> str:
+        """The class as the joint condition."""
+        return class_of(row)
 
     def features(self, captions: list[str]) -> tuple[Tensor, Tensor]:
         """(B,) places of the classes; all count."""
@@ -127,10 +124,8 @@ class Trainer(DuetTrainer):
         torch.manual_seed(settings.seed)
         data = Data(of_classes(scenes), settings, device)
         self.begin(settings, out, data, device)
-        sizes = ("latent_dim", "ff_size", "num_layers", "num_heads", "embed_dim", "cond_dim")
-        config = CompactBiGraphDiffConfig(
-            data.names, data.touches, **{name: getattr(settings, name) for name in sizes}, layout=scenes.layout
-        )
+        sizes = common(settings, CompactBiGraphDiffConfig)
+        config = CompactBiGraphDiffConfig(data.names, data.touches, **sizes, layout=scenes.layout)
         model = CompactBiGraphDiff(config)
         model.mean.copy_(data.mean)
         model.std.copy_(data.std)

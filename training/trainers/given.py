@@ -1,4 +1,4 @@
-"""Draws what is given of a training motion: a person, the past, a span, poses, joints, paths, a stage; and drafts."""
+"""Draws what is given of a training motion: a person, the past, a span, poses, joints, paths, places; and drafts."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from itertools import accumulate
 import torch
 from torch import Tensor
 
-from models.known import FLOOR, Hold, Known
-from models.motion_tokens import FEATURES, NUM_CONTACTS, NUM_JOINTS, TokenLayout, headings, pack, unpack
+from models.known import FLOOR, Known
+from models.motion_tokens import FEATURES, NUM_CONTACTS, NUM_JOINTS, TokenLayout, headings
 
 POSE = FEATURES - NUM_CONTACTS
 
@@ -26,26 +26,18 @@ class Shares:
         poses: one to three single frames, of both or of one.
         path: where one or both are on the floor, at all times or at a few; in half of them the heading, too.
         joints: the pelvis and one to four joints of a person for a while.
-        staged: as the lab gives a story's beat to the network, see :func:`_staged`.
         places: where people are and how they face, of both or of one.
         more: of the samples in which something is given, how many have a second kind given.
     """
 
-    person: float = 0.12
-    past: float = 0.08
-    span: float = 0.06
-    poses: float = 0.06
-    path: float = 0.1
-    joints: float = 0.03
-    staged: float = 0.0
-    places: float = 0.0
-    more: float = 0.3
-
-
-AS_PLACES = Shares(person=0.08, past=0.12, span=0.03, poses=0.03, path=0.08, joints=0.01, places=0.5, more=0.35)
-"""What is given where the network is led by places, and by drafts of poses."""
-AS_STAGED = Shares(person=0.08, past=0.08, span=0.04, poses=0.04, path=0.05, joints=0.03, staged=0.45)
-"""What is given where the network is to be led by the lab's plans."""
+    person: float = 0.08
+    past: float = 0.12
+    span: float = 0.03
+    poses: float = 0.03
+    path: float = 0.08
+    joints: float = 0.01
+    places: float = 0.5
+    more: float = 0.35
 
 
 class Draw:
@@ -150,31 +142,9 @@ def _joints(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
 _HIPS = (1, 2)
 """Joints of SMPL, as are those below."""
 _LEGS = (0, 1, 2, 3, 4, 5, 7, 8, 10, 11)
-_TRUNK = tuple(range(16))
 _REACHING = (3, 6, 9, 12, 15, 13, 14, 16, 17)
 _ARMS = ((18, 20), (19, 21), (18, 20, 19, 21))
 """Elbow and wrist of the left arm, of the right one, of both."""
-
-
-def _staged(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
-    """The parts that a story's plan gives: a way with its headings, or a stand, legs or a trunk, and hands that reach.
-
-    Each person has their own, at every fourth frame or so, from the beginning or for a while.
-    """
-    for person in range(2):
-        kind = draw.uniform()
-        if kind < 0.35:
-            _way(mask[person], heading[person], frames, draw)
-        elif kind < 0.55:
-            _kept(mask[person], _times(frames, draw), range(22))
-        elif kind < 0.7:
-            _kept(mask[person], _times(frames, draw), _LEGS)
-        elif kind < 0.8:
-            _kept(mask[person], _times(frames, draw), _TRUNK)
-        if (kind < 0.35 or kind > 0.55) and draw.uniform() < 0.5:
-            arm = _ARMS[draw.integer(0, 2)]
-            joints = arm if draw.uniform() < 0.3 else (*_REACHING, *arm)
-            _kept(mask[person], _times(frames, draw), joints)
 
 
 def _places(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
@@ -194,17 +164,6 @@ def _way(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
     for hip in _HIPS:
         for axis in FLOOR:
             mask[turned, 3 * hip + axis] = True
-
-
-def _times(frames: int, draw: Draw) -> Tensor:
-    """Times of a shape: all along or for a while, 3 to 8 frames apart, or one to six of them."""
-    if draw.uniform() < 0.2:
-        return draw.frames(draw.integer(1, 6), frames)
-    start, stop = 0, frames
-    if draw.uniform() < 0.6:
-        start = draw.integer(0, frames - 1)
-        stop = min(frames, start + draw.integer(10, 90))
-    return torch.arange(start, stop, draw.integer(3, 8))
 
 
 def _kept(mask: Tensor, times: Tensor, joints: Iterable[int]) -> None:
@@ -292,53 +251,5 @@ _KINDS = {
     "poses": _poses,
     "path": _path,
     "joints": _joints,
-    "staged": _staged,
     "places": _places,
 }
-
-
-@dataclass
-class Held:
-    """The moves of a hold for N columns of control points, as tensors of one size.
-
-    A batch of training holds hundreds of different masks. A product for each is right on a CPU, and hundreds of
-    tiny kernels on a GPU.
-
-    Attributes:
-        features: see :attr:`models.known.Hold.features`; float16.
-        at: (N,) the columns, of B·2·70.
-        group: (N,) which move is theirs.
-        offset: (N, K).
-        moves: (G, K, K); zeros where nothing is left of a column.
-        layout: frames a knot and knots a token.
-    """
-
-    features: Tensor
-    at: Tensor
-    group: Tensor
-    offset: Tensor
-    moves: Tensor
-    layout: TokenLayout
-
-    @classmethod
-    def of(cls, hold: Hold) -> Held:
-        """The same as a hold that knows something."""
-        knots = hold.groups[0].offset.shape[1]
-        return cls(
-            hold.features.half(),
-            torch.cat([group.at for group in hold.groups]),
-            torch.cat([torch.full_like(group.at, i) for i, group in enumerate(hold.groups)]),
-            torch.cat([group.offset for group in hold.groups]),
-            torch.stack([torch.zeros(knots, knots) if g.move is None else g.move for g in hold.groups]),
-            hold.layout,
-        )
-
-    def __call__(self, x: Tensor) -> Tensor:
-        """x (B, tokens, 2·token_features) with the known part written in."""
-        control = unpack(x, self.layout).transpose(2, 3)  # (B, 2, 70, K)
-        columns = control.reshape(-1, control.shape[-1])
-        # In float32 also under autocast: what is known must be met.
-        with torch.autocast(x.device.type, enabled=False):
-            kept = torch.bmm(self.moves[self.group], columns[self.at].float()[..., None])[..., 0]
-        held = columns.index_copy(0, self.at, (self.offset + kept).to(columns))
-        return pack(held.view(-1, 2, FEATURES, control.shape[-1]).transpose(2, 3), self.layout)

@@ -21,7 +21,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +32,7 @@ from torch import Tensor
 from models.interformer.compact import FPS, JOINTS_15, CompactInterFormer, CompactInterFormerConfig
 from models.interformer.network import JOINTS
 from models.intergen.losses import masked_mean
+from models.weights_io import common
 from motion import InputError
 from motion.skeleton import SBU15
 from motion.transforms import canonicalize, mirrored, resample, turn
@@ -133,12 +134,10 @@ class Trainer(Loop):
         if not scenes:
             raise InputError("There are no training pairs: give the whole release.")
         self.settings, self.out = settings, out
-        out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
         self.scenes = scenes
-        names = {f.name for f in fields(CompactInterFormerConfig)}
-        sizes = {k: v for k, v in asdict(settings).items() if k in names}
-        self.model = CompactInterFormer(CompactInterFormerConfig(**sizes))
+        sizes = CompactInterFormerConfig(**common(settings, CompactInterFormerConfig))
+        self.model = CompactInterFormer(sizes)
         self._normalize()
         if not self.checkpoint.exists():
             self._solve()

@@ -35,13 +35,8 @@ class Settings:
     cond_drop_prob: probability that a scene's words are dropped, for classifier-free guidance.
     noisiest: share of samples whose timestep is drawn from the noisiest tenth, where it is decided what
         happens, see :func:`training.trainers.intergen.draw_timesteps`.
-    words: the network reads words, a sentence for each person and what is given, see
-        :mod:`models.intergen.words`.
     continued: share of the scenes of several beats that are cut: their words are one beat's, and what came before
         is given, which is how a scene is made longer.
-    staged: parts of the motion are given as the lab's plans give them, see
-        :data:`training.trainers.given.AS_STAGED`.
-    drafts: the network reads drafts of the motion, see :func:`training.trainers.given.drafted`.
     given: how often each kind of part of the motion is given.
     """
 
@@ -62,10 +57,7 @@ class Settings:
     t_bar: float = 0.7
     noisiest: float = 0.4
     seed: int = 0
-    words: bool = True
     continued: float = 0.2
-    staged: bool = False
-    drafts: bool = False
     given: Shares = field(default_factory=Shares)
     weights: LossWeights = field(
         default_factory=lambda: LossWeights(
@@ -178,7 +170,7 @@ class Data:
     """Draws batches of similar lengths, on the CPU; batch ``step`` is the same in every run of the same seed.
 
     Args:
-        settings: its ``batch``, ``seed`` and ``cond_drop_prob``, and of InterGen ``words`` and ``continued``.
+        settings: its ``batch``, ``seed`` and ``cond_drop_prob``, and of InterGen ``continued``.
         cache: where the features of sentences are kept.
         device: where the text encoder runs: on a CPU once for all sentences, on a GPU in each step.
         captions: whether the batches have words.
@@ -208,7 +200,7 @@ class Data:
     def known_captions(self) -> set[str]:
         """All captions that a batch may have, but for their mirror images."""
         known = {c for row in self.rows for sentences in sentence_lists(row) for c in sentences}
-        if self.settings.words and self.settings.continued:
+        if self.settings.continued:
             known |= {c for row in self.rows for beat in later_beats(row) for c in beat["captions"]}
         return known
 
@@ -235,7 +227,7 @@ class Data:
         chosen = [sentences[int(u * len(sentences))] if sentences else "" for sentences, u in found]
         if draw[0] < self.settings.cond_drop_prob:
             return chosen, [False] * 3
-        if not self.settings.words or not all(chosen):
+        if not all(chosen):
             return chosen, [True, False, False]
         read = bisect(list(accumulate(SENTENCES.values())), draw[1])
         return chosen, list(list(SENTENCES)[min(read, len(SENTENCES) - 1)])
@@ -250,7 +242,7 @@ class Data:
             control points (2, K, 70) in metres, canonical, how many frames pass before the beat, and its words;
             None where the scene is not cut.
         """
-        beats = later_beats(row) if self.settings.words else []
+        beats = later_beats(row)
         if not beats or draw[0] >= self.settings.continued:
             return None
         beat = beats[int(draw[1] * len(beats))]
@@ -323,3 +315,23 @@ class Data:
         if self.captions is None:
             return batch
         return replace(batch, text=self.captions.features_of(batch.text, batch.text_mask))
+
+
+class OneSentence(Data):
+    """Batches in which of the words only those for both people are read, and no scene is cut."""
+
+    def caption(self, row: dict[str, Any], draw: float) -> str:
+        """The words of a scene; ``draw`` is uniform in [0, 1)."""
+        return row["captions"][int(draw * len(row["captions"]))]
+
+    def known_captions(self) -> set[str]:
+        """All captions that a batch may have, but for their mirror images."""
+        return {caption for row in self.rows for caption in row["captions"]}
+
+    def sentences(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[list[str], list[bool]]:
+        """A scene's sentence, and whether it is read."""
+        return [self.caption(row, draw[2]), "", ""], [draw[0] >= self.settings.cond_drop_prob, False, False]
+
+    def continued(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[Tensor, int, str] | None:
+        """The whole scene."""
+        return None

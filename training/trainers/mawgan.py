@@ -24,10 +24,10 @@ from models.mawgan.losses import (
     position_loss,
     reconstruction_loss,
     skeleton_loss,
-    speed_loss,
 )
-from models.mawgan.network import Critic, MAWGANConfig, PredictiveMAWGAN, to_curves, to_positions, without_flicker
+from models.mawgan.network import Critic, MAWGANConfig, PredictiveMAWGAN, to_curves, to_positions
 from models.mawgan.srvf import exp_map, karcher_mean, log_map, to_srvf
+from models.weights_io import common
 from motion import InputError
 from training.core.shell import at_least
 from training.trainers.prediction import PredictionTrainer, train
@@ -66,18 +66,8 @@ class Settings(MAWGANLossWeights):
 
     def network(self, joints: int) -> MAWGANConfig:
         """The sizes of predictor and critic."""
-        return MAWGANConfig(
-            joints,
-            self.past,
-            self.future,
-            self.fc,
-            channels=tuple(self.width >> i for i in range(4)),
-            critic=tuple(self.width // 8 >> i for i in range(3)),
-            critic_fc=self.critic_fc,
-            critic_stride=self.critic_stride,
-            linear=self.linear,
-            length=self.length,
-        )
+        channels, critic = tuple(self.width >> i for i in range(4)), tuple(self.width // 8 >> i for i in range(3))
+        return MAWGANConfig(joints, **common(self, MAWGANConfig), channels=channels, critic=critic)
 
 
 LEAN = {
@@ -144,9 +134,10 @@ class Trainer(PredictionTrainer):
         return log_map(mean, exp_map(mean, s))
 
     def rate(self) -> float:
-        """Share of the learning rate: a cosine from 1 to ``final_rate``."""
+        """The learning rate of this step: a cosine down to the share ``final_rate``."""
         s = self.settings
-        return s.final_rate + (1 - s.final_rate) * 0.5 * (1 + math.cos(math.pi * min(1, self.step / s.steps)))
+        share = s.final_rate + (1 - s.final_rate) * 0.5 * (1 + math.cos(math.pi * min(1, self.step / s.steps)))
+        return s.learning_rate * share
 
     def critic_steps(self, real: Tensor, made: Tensor) -> Iterator[float]:
         """Trains the critic; yields its losses.
@@ -173,41 +164,25 @@ class Trainer(PredictionTrainer):
     def train_step(self) -> dict[str, float]:
         """Takes one optimizer step; returns each loss by name."""
         weights = self.settings
-        for optimizer in (self.optimizer, self.critic_optimizer):
-            for group in optimizer.param_groups:
-                group["lr"] = self.settings.learning_rate * self.rate()
+        for group in self.critic_optimizer.param_groups:
+            group["lr"] = self.rate()
         windows = self.batch()
         moves, past, real = self.pairs(windows)
         truth = windows[moves, self.settings.past :]
         s, longer = self.model.generate(past)
         made = self.seen(s)
         critic = list(self.critic_steps(real, made.detach())) if weights.adversarial else [0.0]
-        curves = self.model.decode(s, longer, past)
-        positions = to_positions(curves)
+        positions = to_positions(self.model.decode(s, longer, past))
         terms = {
             "reconstruction": weights.reconstruction * reconstruction_loss(made, real),
             "skeleton": weights.skeleton * skeleton_loss(positions, truth),
             "bone": weights.bone * bone_loss(positions, truth, self.windows.bones),
+            "position": weights.position * position_loss(positions, truth),
         }
-        if weights.position:
-            terms["position"] = weights.position * position_loss(positions, truth)
-        if weights.speed:
-            last = past[:, -1:]
-            terms["speed"] = weights.speed * speed_loss(
-                to_positions(without_flicker(last, curves)), truth, to_positions(last)
-            )
         if weights.adversarial:
             terms["adversarial"] = -weights.adversarial * self.critic(made).mean()
-        total = torch.stack(list(terms.values())).sum()
-        self.optimizer.zero_grad(set_to_none=True)
-        total.backward()
-        nn.utils.clip_grad_norm_(self.model.parameters(), 10.0)
-        self.optimizer.step()
-        self.step += 1
-        self.average()
-        values = {name: value.item() for name, value in terms.items()}
         error = (positions - truth).norm(dim=-1).mean().item()
-        return values | {"critic": sum(critic) / len(critic), "mm": 1000 * error}
+        return self.step_on(terms, clip=10.0) | {"critic": sum(critic) / len(critic), "mm": 1000 * error}
 
 
 _STILL = 1e-3

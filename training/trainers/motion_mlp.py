@@ -13,6 +13,7 @@ import torch
 from torch import Tensor, nn
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
+from models.weights_io import common
 from training.core.shell import at_least
 from training.trainers.prediction import PredictionTrainer, train
 
@@ -79,8 +80,7 @@ class Trainer(PredictionTrainer):
     def network(self) -> nn.Module:
         """The network as a run begins, its linear part fitted."""
         s = self.settings
-        sizes = (s.past, s.future, s.past_coefficients, s.future_coefficients, s.width, s.blocks, s.dropout)
-        model = MotionMLP(MotionMLPConfig(self.windows.joints, *sizes)).to(self.device)
+        model = MotionMLP(MotionMLPConfig(self.windows.joints, **common(s, MotionMLPConfig))).to(self.device)
         if not self.checkpoint.exists():
             model.fit_linear(self.windows.batch(s.fit, (s.seed, 0, 1)).to(self.device))
         parents, children = zip(*self.windows.bones, strict=True)

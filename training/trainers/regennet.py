@@ -21,12 +21,11 @@ from torch import Tensor
 from torch.nn.attention import SDPBackend, sdpa_kernel
 
 from models.diffusion import NoiseSchedule
-from models.errors import Released
-from models.intergen.compact import load_folder as load_intergen
+from models.intergen.compact import CompactInterGen
 from models.intergen.losses import bone_lengths, facing, joint_distances, masked_mean
 from models.motion_tokens import FEATURES, NUM_CONTACTS
-from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load_folder
-from models.weights_io import save_network
+from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig
+from models.weights_io import common, load_network, save_network
 from motion.skeleton import FEET
 from training.core.loop import mixed_precision
 from training.core.shell import at_least, train
@@ -34,7 +33,7 @@ from training.prepare import Scenes, load
 from training.trainers.intergen_data import Batch, seeded
 from training.trainers.regennet_data import Data, Past, knot_positions, make_past, plan, seen_rows
 from training.trainers.scenes import Drawn, SceneTrainer
-from training.trainers.touch import with_touches
+from training.trainers.touch import with_touches, without_touches
 
 SUMMARY = (
     "ReGenNet (Xu et al.) at width 192 over spline control points: the reaction to a given person, "
@@ -186,13 +185,11 @@ class Trainer(SceneTrainer):
         workers: int = 0,
     ) -> None:
         self.settings, self.out, self.device, self.workers = settings, out, device, workers
-        out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
-        shipped = load_folder(init)[0] if init else None
-        conditioner = shipped.conditioner if shipped else load_intergen(words)[0].conditioner
-        sizes = ("latent_dim", "ff_size", "num_layers", "num_heads", "window")
+        shipped = load_network(init, CompactReGenNet)[0] if init else None
+        conditioner = shipped.conditioner if shipped else load_network(words, CompactInterGen)[0].conditioner
         self.config = CompactReGenNetConfig(
-            **{name: getattr(settings, name) for name in sizes},
+            **common(settings, CompactReGenNetConfig),
             cond_dim=conditioner.config.latent_dim,
             text_layers=conditioner.config.num_layers,
             frames_per_knot=scenes.layout.frames_per_knot,
@@ -203,8 +200,7 @@ class Trainer(SceneTrainer):
             model.conditioner.load_state_dict(conditioner.state_dict())
             self.data.normalize(model)
         else:
-            known = {k: v for k, v in shipped.state_dict().items() if not k.startswith("touch_reader.")}
-            Released(known, "ReGenNet").loaded(model)
+            without_touches(shipped).loaded(model)
         model.conditioner.requires_grad_(False)
         self.schedule = NoiseSchedule(device=device)
         self.weights = torch.ones(FEATURES, device=device)

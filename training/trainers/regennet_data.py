@@ -12,13 +12,12 @@ import torch
 from torch import Tensor
 
 from models.diffusion import NoiseSchedule, top_timesteps
-from models.motion_tokens import FEATURES, NUM_CONTACTS, canonical_control, mirror_control
+from models.motion_tokens import FEATURES, NUM_CONTACTS, NUM_JOINTS, canonical_control, mirror_control
 from models.regennet.compact import LEAD, CompactReGenNet
 from motion import SMPL22
 from motion.smoothing import smoothstep
 from training.prepare import ROOT_SCALE
-from training.trainers import intergen_data
-from training.trainers.intergen_data import Batch, balanced
+from training.trainers.intergen_data import Batch, OneSentence, balanced
 
 
 def at_knots(control: Tensor) -> Tensor:
@@ -29,8 +28,12 @@ def at_knots(control: Tensor) -> Tensor:
 
 def knot_positions(control: Tensor) -> Tensor:
     """Control points (…, K, 70) → positions at the knots (…, K − 2, 22, 3)."""
-    joints = at_knots(control).unflatten(-1, (-1, 3))
-    root, others = joints[..., :1, :], joints[..., 1:, :]
+    return _placed(at_knots(control))
+
+
+def _placed(pose: Tensor) -> Tensor:
+    """A pose's numbers (…, 66) → positions (…, 22, 3)."""
+    root, others = pose.unflatten(-1, (-1, 3)).split([1, NUM_JOINTS - 1], dim=-2)
     return torch.cat([root, others + root], dim=-2)
 
 
@@ -47,10 +50,10 @@ def is_recorded(row: dict[str, Any]) -> bool:
     return any(str(source).startswith(("sbu", "k3hi")) for source in row["sources"])
 
 
-class Data(intergen_data.Data):
+class Data(OneSentence):
     """Batches as :mod:`training.trainers.intergen` draws them, with these differences.
 
-    Recorded pairs count ``recorded`` times. Of the words, only those for both people are read. Half of the scenes are
+    Recorded pairs count ``recorded`` times. Half of the scenes are
     shown mirrored, since an actor may lead with either hand. A share ``crop`` begins somewhere in their first half;
     ``past`` is 1 for these, as the reactor's first pose is given.
     """
@@ -58,15 +61,6 @@ class Data(intergen_data.Data):
     def weighted(self, rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
         """The rows, each as often as it is drawn."""
         return [row for row in balanced(rows) for _ in range(self.settings.recorded if is_recorded(row) else 1)]
-
-    def known_captions(self) -> set[str]:
-        """All captions that a batch may have, but for their mirror images."""
-        return {caption for row in self.rows for caption in row["captions"]}
-
-    def sentences(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[list[str], list[bool]]:
-        """A scene's sentence, and whether it is read."""
-        caption = row["captions"][int(draw[2] * len(row["captions"]))]
-        return [caption, "", ""], [draw[0] >= self.settings.cond_drop_prob, False, False]
 
     def mirrors(self, row: dict[str, Any], text: str, draw: float) -> bool:
         """Whether a scene is shown mirrored."""
@@ -79,7 +73,7 @@ class Data(intergen_data.Data):
         tokens, per_token = row["tokens"], self.scenes.layout.knots_per_token
         left_out = 1 + int(draw[1] * tokens / 2)
         late = self.scenes.scene(row)[:, left_out * per_token :]
-        return canonical_control(late), 1, row["captions"][int(draw[2] * len(row["captions"]))]
+        return canonical_control(late), 1, self.caption(row, draw[2])
 
     def people(self, batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
         """Actor and reactor (B, K, 70) in metres, each with its last control point held, and mask (B, K)."""
@@ -247,6 +241,4 @@ def _ddim(schedule: NoiseSchedule, x: Tensor, made: Tensor, now: Tensor, followi
 
 def _mean_distance(off: Tensor) -> Tensor:
     """Mean distance of the joints, metres, of differences of control points: (B, 70) → (B,)."""
-    joints = off[:, :-NUM_CONTACTS].unflatten(-1, (-1, 3))
-    root, others = joints[:, :1], joints[:, 1:]
-    return torch.cat([root, others + root], dim=1).norm(dim=-1).mean(-1)
+    return _placed(off[:, :-NUM_CONTACTS]).norm(dim=-1).mean(-1)

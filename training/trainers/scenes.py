@@ -17,10 +17,9 @@ from torch import Tensor
 
 from models.diffusion import NoiseSchedule
 from models.intergen.losses import InterGenLoss, simple_loss
-from models.known import Hold
+from models.known import Held
 from models.motion_tokens import FEATURES, TokenLayout
 from training.core.loop import Loop, drawn_ahead, moved
-from training.trainers.given import Held
 from training.trainers.intergen_data import Batch, Data, seeded
 
 
@@ -49,7 +48,7 @@ class Drawn:
 
     batch: Batch
     t: Tensor
-    hold: Hold | Held | None = None
+    hold: Held | None = None
     draft: Tensor | None = None
 
 

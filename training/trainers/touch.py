@@ -14,6 +14,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
+from models.errors import Released
 from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
 from models.text import TextConditioner
@@ -68,6 +69,12 @@ def conditions(conditioner: TextConditioner, captions: list[str]) -> Tensor:
     return found
 
 
+def without_touches(model: CompactInterGen | CompactReGenNet) -> Released:
+    """The weights of a network but for its touch reader."""
+    known = {k: v for k, v in model.state_dict().items() if not k.startswith("touch_reader.")}
+    return Released(known, type(model).__name__.removeprefix("Compact"))
+
+
 def with_touches(model: Network, scenes: Scenes) -> tuple[Network, float]:
     """The same network with a fitted touch reader, and its accuracy on test captions.
 
@@ -80,8 +87,7 @@ def with_touches(model: Network, scenes: Scenes) -> tuple[Network, float]:
     if not known:
         return model, float("nan")
     result = type(model)(replace(model.config, touches=known))
-    network = {k: v for k, v in model.state_dict().items() if not k.startswith("touch_reader.")}
-    result.load_state_dict(network, strict=False)
+    result.load_state_dict(without_touches(model), strict=False)
     reader = result.eval().touch_reader
     assert reader is not None
 

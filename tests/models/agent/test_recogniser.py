@@ -6,9 +6,9 @@ from pathlib import Path
 
 import torch
 
-from models.agent.recogniser import FRAMES, OBSERVED, PREDICTED, Recogniser, RecogniserConfig, load_folder, sampled
+from models.agent.recogniser import FRAMES, OBSERVED, PREDICTED, Recogniser, RecogniserConfig, sampled
 from models.layers import neighbours
-from models.weights_io import save_network
+from models.weights_io import load_network, save_network
 from motion import SMPL22
 
 CONFIG = RecogniserConfig(
@@ -34,7 +34,7 @@ def test_a_folder_gives_the_same_network_back(tmp_path: Path) -> None:
     torch.manual_seed(0)
     network = Recogniser(CONFIG).half().float().eval().requires_grad_(False)
     save_network(tmp_path, network)
-    again, _ = load_folder(tmp_path)
+    again, _ = load_network(tmp_path, Recogniser)
     assert again.config == CONFIG
     motion = torch.randn(3, FRAMES, 22, 3)
     logits = network(motion)

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 import torch
 
-from models.bigraphdiff.compact import CompactBiGraphDiff, CompactBiGraphDiffConfig, load_folder
+from models.bigraphdiff.compact import CompactBiGraphDiff, CompactBiGraphDiffConfig
 from models.errors import WeightsError
-from models.weights_io import save_network
+from models.weights_io import load_network, save_network
 
 SHAKE = (("right_wrist", "right_wrist"),)
 CONFIG = CompactBiGraphDiffConfig(
@@ -52,7 +52,7 @@ def test_the_class_changes_what_is_predicted(model: CompactBiGraphDiff) -> None:
 
 def test_a_folder_gives_the_same_network_back(model: CompactBiGraphDiff, tmp_path: Path) -> None:
     save_network(tmp_path, model.half().float())
-    again, _ = load_folder(tmp_path)
+    again, _ = load_network(tmp_path, CompactBiGraphDiff)
     assert again.config == CONFIG
     assert again.touches("shake hands") == SHAKE and again.touches("wave") == ()
     x, t = noised(model)
@@ -62,4 +62,4 @@ def test_a_folder_gives_the_same_network_back(model: CompactBiGraphDiff, tmp_pat
     meta["model"]["latent_dim"] = 64
     (tmp_path / "config.json").write_text(json.dumps(meta))
     with pytest.raises(WeightsError, match="do not fit their config"):
-        load_folder(tmp_path)
+        load_network(tmp_path, CompactBiGraphDiff)

@@ -9,9 +9,9 @@ import pytest
 import torch
 
 from models.errors import WeightsError
-from models.interformer.compact import CompactInterFormer, CompactInterFormerConfig, load_folder
+from models.interformer.compact import CompactInterFormer, CompactInterFormerConfig
 from models.interformer.network import JOINTS
-from models.weights_io import save_network
+from models.weights_io import load_network, save_network
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_before_anything_is_learned_nobody_moves(scene):
 
 def test_a_folder_holds_the_network_and_says_what_is_wrong_with_it(model, tmp_path: Path):
     save_network(tmp_path, model, trained_steps=3)
-    found, source = load_folder(tmp_path)
+    found, source = load_network(tmp_path, CompactInterFormer)
     assert source.meta["trained_steps"] == 3 and found.config == model.config
     for name, value in model.state_dict().items():
         torch.testing.assert_close(found.state_dict()[name], value.half().float())
@@ -90,4 +90,4 @@ def test_a_folder_holds_the_network_and_says_what_is_wrong_with_it(model, tmp_pa
     config["model"]["joint_width"] = 8
     (tmp_path / "config.json").write_text(json.dumps(config))
     with pytest.raises(WeightsError, match="do not fit"):
-        load_folder(tmp_path)
+        load_network(tmp_path, CompactInterFormer)

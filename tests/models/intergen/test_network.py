@@ -83,27 +83,6 @@ def test_attention_equals_torch_multihead_attention_with_zero_attention():
     assert_equal(attention(query, source, keep), expected, 1e-5)
 
 
-def test_roles_break_the_symmetry_and_survive_saving():
-    network = random_network(InterGenConfig(**{**vars(SMALL), "role_embedding": True}))
-    x, t, cond = random_inputs()
-    out = network(x, t, cond)
-    assert (network(swapped(x), t, cond) - swapped(out)).abs().max() > 0.1
-    again = from_released(network.state_dict(), num_heads=2)
-    assert again.config.role_embedding
-    assert torch.equal(again(x, t, cond), out)
-
-
-def test_text_of_a_role_tells_the_people_apart_by_words_alone():
-    network = random_network(InterGenConfig(**{**vars(SMALL), "role_text": True}))
-    x, t, cond = random_inputs()
-    out = network(x, t, cond)
-    assert (network(swapped(x), t, cond) - swapped(out)).abs().max() > 0.1
-    without = torch.zeros_like(cond)
-    assert_equal(network(swapped(x), t, without), swapped(network(x, t, without)), 1e-5)
-    again = from_released(network.state_dict(), num_heads=2)
-    assert again.config.role_text and torch.equal(again(x, t, cond), out)
-
-
 def test_attention_is_in_float32_under_autocast():
     """In bfloat16, which has 8 bits, the two would be a thousand times farther apart."""
     draw = torch.Generator().manual_seed(0)

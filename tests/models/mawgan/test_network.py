@@ -40,7 +40,7 @@ def test_defaults_are_the_thesis_sizes() -> None:
     assert [m.out_channels for m in critic.down if isinstance(m, nn.Conv2d)] == [64, 32, 16]
     assert [m.out_features for m in critic.score if isinstance(m, nn.Linear)] == [1024, 1]
     weights = MAWGANLossWeights()
-    assert astuple(weights) == (1, 1, 10, 10, 10, 0, 0)
+    assert astuple(weights) == (1, 1, 10, 10, 10, 0)
     assert not (config.linear or config.length)
 
 

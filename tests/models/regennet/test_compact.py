@@ -5,7 +5,7 @@ import torch
 
 from models.motion_tokens import FEATURES
 from models.regennet import compact
-from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig
+from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, CompactStream
 from motion import SMPL22
 
 
@@ -15,7 +15,7 @@ def test_a_stream_decodes_each_interval_once(monkeypatch: pytest.MonkeyPatch) ->
     decoded = []
     decode = compact.decode
     monkeypatch.setattr(compact, "decode", lambda *given: decoded.append(given) or decode(*given))
-    stream = model.stream(torch.zeros(1, 16), steps=2, max_frames=12)
+    stream = CompactStream(model, torch.zeros(1, 16), steps=2, max_frames=12)
     noise = iter(torch.randn(model.num_rows(12) + 1, 1, FEATURES))
     actor = torch.from_numpy(SMPL22.rest_positions()).float()
     frames = torch.stack([stream.step(actor, noise=noise)[0] for _ in range(12)])

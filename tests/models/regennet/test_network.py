@@ -7,7 +7,7 @@ import torch
 
 from models.diffusion import make_scheduler, sample_steps
 from models.errors import WeightsError
-from models.regennet.network import ReGenNet, ReGenNetConfig, StreamError, from_released
+from models.regennet.network import ReactionStream, ReGenNet, ReGenNetConfig, StreamError, from_released
 from tests.models.reference_arrays import Reference, assert_equal
 
 KINDS = ("regennet_online", "regennet_offline", "regennet_online_action")
@@ -67,7 +67,7 @@ def test_the_stream_gives_the_frames_of_the_whole_motion(name):
     ref, network = load(name)
     noise, actor, action = ref["x"], ref["actor"], ref.arrays.get("action")
     *_, whole = sample_steps(lambda x, t: network(x, t, actor, action), noise, make_scheduler("ddim", 5))
-    stream = network.stream(steps=5, batch=2, action=action, max_frames=18)
+    stream = ReactionStream(network, steps=5, batch=2, action=action, max_frames=18)
     frames = [stream.step(actor[..., i], noise=noise[..., i]) for i in range(18)]
     assert_equal(torch.stack(frames, dim=-1), whole.sample)
     assert stream.length == 18
@@ -78,7 +78,7 @@ def test_the_stream_gives_the_frames_of_the_whole_motion(name):
 def test_an_offline_network_cannot_stream():
     _, network = load("regennet_offline")
     with pytest.raises(StreamError, match="choose online weights"):
-        network.stream()
+        ReactionStream(network)
 
 
 def test_other_weights_are_refused():

@@ -1,4 +1,4 @@
-"""Errors on the test split: networks with and without words are compared on the same scenes and noise."""
+"""Errors on the test split: networks are compared on the same scenes and noise."""
 
 import json
 from dataclasses import replace
@@ -31,20 +31,20 @@ def test_runs_are_compared_by_timestep(
     scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(held_out, "TIMESTEPS", (5, 999))
-    for words in (False, True):
-        trainer = begin(scenes, tmp_path / f"words-{words}", replace(SETTINGS, words=words, batch=4))
+    for seed in (0, 1):
+        trainer = begin(scenes, tmp_path / f"run-{seed}", replace(SETTINGS, seed=seed))
         with torch.no_grad():  # a network that gives back what it sees: no error where nothing is noised
             for module in (trainer.model, trainer.ema):
                 for parameter in module.denoiser.out.parameters():
                     parameter.zero_()
         take(trainer, 0)
-    runs = [str(tmp_path / f"words-{words}") for words in (False, True)]
+    runs = [str(tmp_path / f"run-{seed}") for seed in (0, 1)]
     words = ["--scenes", str(scenes), "--cache", str(tmp_path), "--batches", "1", "--models", *runs]
     capsys.readouterr()
     assert held_out.main([*words, "--given", "nothing", "person"]) == 0
     found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [(f["model"], f["given"]) for f in found] == [
-        (f"words-{words}", given) for words in (False, True) for given in ("nothing", "person")
+        (f"run-{seed}", given) for seed in (0, 1) for given in ("nothing", "person")
     ]
     for plain, given in (found[:2], found[2:]):
         # A network that predicts the mean errs as much at every timestep, and half where one of two is given.

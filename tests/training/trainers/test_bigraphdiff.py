@@ -9,7 +9,8 @@ import pytest
 import torch
 from safetensors.torch import load_file
 
-from models.bigraphdiff.compact import load_folder
+from models.bigraphdiff.compact import CompactBiGraphDiff
+from models.weights_io import load_network
 from motion import InputError
 from tests.training.trainers.runs import write_corpus
 from training import prepare
@@ -80,7 +81,7 @@ def test_the_shell_writes_the_folder_that_is_shipped(
     ]
     words = ["--scenes", str(scenes), "--out", str(tmp_path / "run"), *sizes]
     assert bigraphdiff.main([*words, "--steps", "2", "--export", str(tmp_path / "weights")]) == 0
-    model, source = load_folder(tmp_path / "weights")
+    model, source = load_network(tmp_path / "weights", CompactBiGraphDiff)
     assert model.config.labels == ("shake hands", "wave")
     assert source.meta["trained_steps"] == 2 and "class" in source.meta["card"]["summary"]
     assert bigraphdiff.main([*words, "--latent-dim", "40", "--steps", "2"]) == 2

@@ -8,7 +8,8 @@ import pytest
 import torch
 from safetensors.torch import load_file
 
-from models.interformer.compact import load_folder
+from models.interformer.compact import CompactInterFormer
+from models.weights_io import load_network
 from motion import SMPL22
 from motion.transforms import heading
 from training.corpus.pairs import Pair
@@ -82,7 +83,7 @@ def test_benchmark_clips_stay_out_and_weights_are_written(scenes, tmp_path: Path
     command = ["--data", "x", "--out", str(tmp_path / "run"), "--export", str(tmp_path / "w"), *sizes]
     assert interformer.main([*command, "--steps", "2"]) == 0
     assert len(seen[0]) == 9
-    model, source = load_folder(tmp_path / "w")
+    model, source = load_network(tmp_path / "w", CompactInterFormer)
     assert source.meta["trained_steps"] == 2 and model.stance[:, 1].max() > 1.4
     assert json.loads((tmp_path / "run" / "log.jsonl").read_text().splitlines()[-1])["step"] == 2
     assert interformer.main([*command, "--steps", "3"]) == 2

@@ -11,13 +11,13 @@ import torch
 from safetensors import SafetensorError
 from safetensors.torch import load_file
 
-from models.intergen.compact import load_folder
+from models.intergen.compact import CompactInterGen
+from models.weights_io import load_network
 from motion import InputError
 from tests.training.trainers.runs import SETTINGS, begin, prepared, take, write_corpus
-from training import export, prepare
+from training import prepare
 from training.core import checkpoint
 from training.trainers import intergen
-from training.trainers.scenes import Drawn
 from webdemo.inference import GenerateRequest, Result
 from webdemo.inference.engine import Engine
 
@@ -39,6 +39,11 @@ def trained(scenes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("run")
     assert intergen.main(["--scenes", str(scenes), "--out", str(out), *SIZES, "--steps", "6"]) == 0
     return out
+
+
+def export(scenes: Path, run: Path, out: Path) -> None:
+    words = ["--scenes", str(scenes), "--out", str(run), *SIZES, "--steps", "6", "--export", str(out)]
+    assert intergen.main(words) == 0
 
 
 def test_a_run_that_stops_goes_on_as_if_it_never_had(scenes: Path, trained: Path, tmp_path: Path) -> None:
@@ -70,13 +75,10 @@ def test_init_begins_with_the_averaged_weights_of_another_run(scenes: Path, trai
 
 
 def test_export_ships_what_the_engine_runs(scenes: Path, trained: Path, tmp_path: Path) -> None:
-    card = tmp_path / "card.json"
-    card.write_text(json.dumps({"summary": "a test"}))
     out = tmp_path / "weights" / "intergen"
-    words = ["--run", str(trained), "--scenes", str(scenes), "--out", str(out), "--card", str(card)]
-    assert export.main(words) == 0
+    export(scenes, trained, out)
     engine = Engine(out.parent)
-    assert engine.info()["summary"] == "a test"
+    assert engine.info()["summary"] == intergen.SUMMARY
     *_, result = engine.run(GenerateRequest(prompt="They shake hands.", seconds=1.0, steps=2, damping=0.0))
     assert isinstance(result, Result)
     assert result.duets[0].positions.shape == (2, 30, 22, 3)
@@ -141,35 +143,12 @@ def test_a_shipped_network_can_be_trained_on(
 ) -> None:
     monkeypatch.setattr("training.trainers.touch.RARE", 1)
     out = tmp_path / "weights"
-    assert export.main(["--run", str(trained), "--scenes", str(scenes), "--out", str(out)]) == 0
-    shipped, _ = load_folder(out)
+    export(scenes, trained, out)
+    shipped, _ = load_network(out, CompactInterGen)
     assert shipped.touch_reader is not None
     ours = begin(scenes, tmp_path / "on", init=out).model.state_dict()
     theirs = shipped.state_dict()
     assert set(theirs) - set(ours) == {key for key in theirs if key.startswith("touch_reader.")}
     assert all(torch.equal(value, theirs[key]) for key, value in ours.items())
-
-
-def test_grown_from_a_shipped_network_the_first_loss_is_the_same(scenes: Path, trained: Path, tmp_path: Path) -> None:
-    """A run without words is exported; one with words begun from it takes its first step from the same loss."""
-    old = replace(SETTINGS, words=False, dropout=0.0, seed=3)
-    take(begin(scenes, tmp_path / "old", old), 3)
-    out = tmp_path / "weights"
-    assert export.main(["--run", str(tmp_path / "old"), "--scenes", str(scenes), "--out", str(out)]) == 0
-    first = []
-    for words in (False, True):
-        trainer = begin(scenes, tmp_path / str(words), replace(old, words=words), init=out)
-        trainer.model.conditioner.eval()  # its own dropout would draw other numbers
-        batch = trainer.data.batch(0)
-        t, noise = torch.tensor([10, 300, 700, 990]), torch.randn_like(batch.x0)
-        first.append((trainer, batch, t, noise))
-    (old_run, batch, t, noise), (new_run, *_) = first
-    known = old_run.known(batch, torch.Generator().manual_seed(2))
-    assert known is not None
-    for run in (old_run, new_run):
-        run.model.eval()
-    found = [
-        {k: v.item() for k, v in run.terms(Drawn(batch, t, run.hold(known)), noise).items()}
-        for run in (old_run, new_run)
-    ]
-    assert found[1] == pytest.approx(found[0], rel=0.02)  # in bfloat16
+    with pytest.raises(InputError, match="not InterGen weights of one size"):
+        begin(scenes, tmp_path / "wide", replace(SETTINGS, latent_dim=64), init=out)

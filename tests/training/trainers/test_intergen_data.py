@@ -73,7 +73,7 @@ def with_beats(scenes: Path, out: Path) -> Path:
 
 def test_a_later_beat_is_learned_with_what_came_before_it_given(scenes: Path, tmp_path: Path) -> None:
     path = with_beats(scenes, tmp_path / "beats.safetensors")
-    given = Shares(person=0, past=0, span=0, poses=0, path=0, joints=0, more=0)
+    given = Shares(*[0.0] * 8)
     trainer = begin(path, tmp_path, replace(SETTINGS, continued=0.5, cond_drop_prob=0.0, given=given))
     read, cut, data = [], 0, trainer.data
 

@@ -33,7 +33,7 @@ MLP = mlp.Settings(
     warmup=1,
 )
 GAN = mawgan.Settings(past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2, batch=4, steps=3)
-LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, speed=300.0, linear=True, length=True)
+LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, linear=True, length=True)
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,8 @@ from safetensors.torch import load_file
 from models.intergen.compact import CaptionBank, CompactConfig, CompactInterGen
 from models.intergen.compact import save_folder as save_intergen
 from models.motion_tokens import FEATURES, TokenLayout, canonical_control, decode, encode, mirror_control
-from models.regennet.compact import load_folder
+from models.regennet.compact import CompactReGenNet
+from models.weights_io import load_network
 from motion import SMPL22, InputError
 from training import prepare
 from training.prepare import Scenes
@@ -96,7 +97,7 @@ def test_the_command_trains_and_ships(scenes: Scenes, words: Path, tmp_path: Pat
     prepare.save(scenes, file)
     call = ["--scenes", str(file), "--out", str(tmp_path / "run"), "--words", str(words), *SIZES]
     assert regennet.main([*call, "--steps", "2", "--export", str(folder)]) == 0
-    model, source = load_folder(folder)
+    model, source = load_network(folder, CompactReGenNet)
     assert source.meta["trained_steps"] == 2
     averaged = load_file(tmp_path / "run" / "last.safetensors")
     for name, value in model.state_dict().items():

@@ -17,6 +17,7 @@ from torch import Tensor
 from models.compiled import take_threads
 from models.diffusion import sample_noise
 from models.motion_tokens import FEATURES
+from models.regennet.compact import CompactStream
 from motion import FPS, SMPL22, Clip
 from motion.placement import Placement
 from motion.steering import Goal, Steering
@@ -71,7 +72,7 @@ class Segment:
         self.condition = condition
         self._placement = Placement.of(Clip(np.asarray(person)[None], FPS, SMPL22), "a")
         own = None if begin is None else model.begin_row(self._given(begin))[None]
-        self._stream = model.stream(condition, steps=STEPS, scale=scale, max_frames=SEGMENT, begin=own)
+        self._stream = CompactStream(model, condition, steps=STEPS, scale=scale, max_frames=SEGMENT, begin=own)
         rows = model.num_rows(SEGMENT) + 1
         self._noise = iter(sample_noise(seed, 1, (rows, FEATURES)).transpose(0, 1))
 

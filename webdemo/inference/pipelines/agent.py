@@ -20,8 +20,9 @@ import numpy as np
 import torch
 
 from acts.staging.window import KnownFrames
-from models.agent.recogniser import OBSERVED, PREDICTED, load_folder, sampled
+from models.agent.recogniser import OBSERVED, PREDICTED, Recogniser, sampled
 from models.known import Hold, Known
+from models.weights_io import load_network
 from motion import FPS, SMPL22, Clip, Duet
 from motion.placement import MEDIAN_START_DISTANCE, Placement
 from motion.vectors import Array
@@ -89,7 +90,7 @@ class Eye:
     """
 
     def __init__(self, folder: Path, predictor: PredictorPipeline) -> None:
-        self.recogniser, source = load_folder(folder)
+        self.recogniser, source = load_network(folder, Recogniser)
         self.predictor, self.digest = predictor, source.digest
 
     def looks(self, positions: Array) -> list[Look]:

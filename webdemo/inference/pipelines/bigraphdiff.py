@@ -9,12 +9,13 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from models.bigraphdiff.compact import CompactBiGraphDiff, load_folder
+from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.bigraphdiff.released import JOINTS, load_released
 from models.diffusion import TRAIN_TIMESTEPS, cosine_betas, make_scheduler, sample_noise, sample_steps
 from models.diffusion.schedule import SamplerName, Scheduler
 from models.intergen.released import read_normaliser
 from models.text.clip import find_vocabulary
+from models.weights_io import load_network
 from motion import FPS, Duet, InputError
 from motion.metrics import compare
 from motion.retarget import to_smpl
@@ -38,7 +39,7 @@ class BiGraphDiffPipeline(TwoPersonPipeline[CompactBiGraphDiff]):
     """
 
     def __init__(self, folder: Path) -> None:
-        model, source = load_folder(folder)
+        model, source = load_network(folder, CompactBiGraphDiff)
         super().__init__(source, model)
 
     def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:

@@ -262,8 +262,8 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part], strictness: f
         strictness: the share of the steps in which drafted poses are held, too.
     """
     held = [part for part in parts if not (isinstance(part, KnownFrames) and part.free)]
-    poses = hold_of(model, frames, held) if held and (strictness or not model.reads_drafts) else None
-    if not model.reads_drafts:
+    poses = hold_of(model, frames, held) if held and (strictness or not model.reads_known) else None
+    if not model.reads_known:
         return Directed(frames, poses, parts=held)
     if strictness == 1:
         return Directed(frames, poses, draft_of(model, frames, [p for p in parts if p not in held]), parts=held)

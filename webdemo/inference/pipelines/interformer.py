@@ -17,9 +17,10 @@ from torch import Tensor
 
 from models.diffusion import sample_noise
 from models.interformer.compact import FPS as NETWORK_FPS
-from models.interformer.compact import JOINTS_15, load_folder
+from models.interformer.compact import JOINTS_15, CompactInterFormer
 from models.interformer.network import NETWORK, WIDTH, InterFormer, from_released
 from models.released import read_tensors, without_wrapper
+from models.weights_io import load_network
 from motion import FPS, SMPL22, Clip
 from motion.ik import fit_skeleton
 from motion.placement import Placement
@@ -55,7 +56,7 @@ class InterFormerPipeline:
     """
 
     def __init__(self, folder: Path) -> None:
-        self.model, source = load_folder(folder)
+        self.model, source = load_network(folder, CompactInterFormer)
         self.name, self.digest = folder.name, source.digest
 
     def run(self, request: ReactRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:

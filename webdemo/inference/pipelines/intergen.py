@@ -16,10 +16,11 @@ from acts import Plan, lexicon
 from acts.captions import of_each
 from acts.staging.stage import score_of
 from models.compiled import Precision, compile_network, has_bfloat16
-from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
+from models.intergen.compact import CaptionBank, CompactInterGen, load_captions
 from models.intergen.released import ReleasedInterGen, load_released
 from models.text import MiniLM
 from models.text.clip import find_vocabulary
+from models.weights_io import load_network
 from motion import FPS, Clip, Duet, stacked_positions
 from motion.vectors import Array
 from webdemo.inference.finish.cleanup import clean_person, finish_of, in_touch
@@ -61,7 +62,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
     """
 
     def __init__(self, folder: Path) -> None:
-        model, source = load_folder(folder)
+        model, source = load_network(folder, CompactInterGen)
         super().__init__(source, model)
         self.bank: CaptionBank = load_captions(source)
         self.encoder = MiniLM()
@@ -114,11 +115,11 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
 
         Args:
             prompt: what both do.
-            alone: what a and b do, in a sentence each, or "". Only a network with ``words`` reads it.
+            alone: what a and b do, in a sentence each, or "".
         """
         tokens = self.encoder([prompt])
         parts = [tokens]
-        if self.model.config.words and any(alone):
+        if any(alone):
             parts += [self.encoder([sentence]) if sentence else tokens.missing() for sentence in alone]
         with torch.no_grad():
             return self.model.condition(*parts), tokens.pooled()[0]

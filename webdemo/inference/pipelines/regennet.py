@@ -19,10 +19,11 @@ from torch import Tensor
 
 from models.diffusion import SamplingStep, make_scheduler, sample_noise, sample_steps
 from models.motion_tokens import FEATURES
-from models.regennet.compact import CompactReGenNet, load_folder
-from models.regennet.network import ROW_WIDTH, ReGenNet
+from models.regennet.compact import CompactReGenNet, CompactStream
+from models.regennet.network import ROW_WIDTH, ReactionStream, ReGenNet
 from models.regennet.released import ROWS, decode, encode, load_released
 from models.text import MiniLM
+from models.weights_io import load_network
 from motion import FPS, Clip, InputError
 from motion.placement import Placement
 from motion.vectors import Array
@@ -51,7 +52,7 @@ class ReGenNetPipeline:
 
     def __init__(self, folder: Path) -> None:
         self.model: CompactReGenNet
-        self.model, source = load_folder(folder)
+        self.model, source = load_network(folder, CompactReGenNet)
         self.name, self.digest = folder.name, source.digest
 
     @cached_property
@@ -186,7 +187,8 @@ class ReGenNetPipeline:
         # A last frame on a knot starts an interval that offline sampling does not need.
         noise = sample_noise(request.seed, request.samples, (model.num_rows(frames) + 1, FEATURES))
         rows, begin = iter(noise.transpose(0, 1)), self._begin(request, placement)
-        stream = model.stream(condition, steps=request.steps, scale=request.guidance, max_frames=frames, begin=begin)
+        sampling = {"steps": request.steps, "scale": request.guidance}
+        stream = CompactStream(model, condition, **sampling, max_frames=frames, begin=begin)
 
         def answer(pose: Array) -> tuple[Array, Array]:
             made, contacts = stream.step(torch.from_numpy(pose).float(), noise=rows)
@@ -269,7 +271,8 @@ class ReleasedReGenNetPipeline(ReGenNetPipeline):
     def _stream(self, request: ReactRequest, condition: Any, placement: Placement) -> Answer:
         frames = request.actor.num_frames
         noise = iter(sample_noise(request.seed, request.samples, (frames, ROWS, ROW_WIDTH)).transpose(0, 1))
-        stream = self.network.stream(steps=request.steps, batch=request.samples, action=condition, max_frames=frames)
+        known = {"steps": request.steps, "batch": request.samples, "action": condition}
+        stream = ReactionStream(self.network, **known, max_frames=frames)
 
         def answer(pose: Array) -> tuple[Array, Array]:
             seen = encode(pose[None])[..., 0].expand(request.samples, -1, -1)
