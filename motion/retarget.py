@@ -179,7 +179,7 @@ def up_axis(*rigs: RigMotion) -> str:
 
 def rest_axis(rig: RigMotion) -> str:
     """The axis along which a rig's rest pose stands; empty for one that does not stand."""
-    rest = _bodies(_rest_positions(rig)[None], rig, match_joints(rig), np.eye(3))
+    rest = _bodies(rig.rest_positions()[None], rig, match_joints(rig), np.eye(3))
     tall = np.mean([rest["neck"] - rest[f"{side}_ankle"] for side in ("left", "right")], axis=(0, 1))
     stands = np.abs(tall).max() > max(_STRAIGHT * np.linalg.norm(tall), _TALL * leg_length(rest))
     return axis_of(tall) if stands else ""
@@ -199,16 +199,9 @@ def _bodies(positions: Array, rig: RigMotion, parts: BodyParts, upright: Array) 
     return bodies
 
 
-def _rest_positions(rig: RigMotion) -> Array:
-    positions = np.array(rig.offsets, dtype=np.float64)
-    for parent, joint in rig.bones:
-        positions[joint] += positions[parent]
-    return positions
-
-
 def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
     """The rig's rest pose (1 frame), Y up and facing +Z, or ``None`` where it is not a standing one."""
-    rest = _rest_positions(rig)[None]
+    rest = rig.rest_positions()[None]
     bodies = _bodies(rest, rig, parts, np.eye(3))
     ankles = (bodies["left_ankle"] + bodies["right_ankle"]) / 2
     tall = (bodies["neck"] - ankles)[0]

@@ -19,11 +19,12 @@ from functools import cached_property
 import numpy as np
 
 from .errors import InputError
+from .skeleton import Tree
 from .vectors import Array
 
 
 @dataclass(frozen=True, eq=False)
-class RigMotion:
+class RigMotion(Tree):
     """The motion of any rig, before it is brought onto one of our skeletons.
 
     Attributes:
@@ -58,11 +59,6 @@ class RigMotion:
     def num_frames(self) -> int:
         """Length in frames."""
         return len(self.positions)
-
-    @cached_property
-    def bones(self) -> tuple[tuple[int, int], ...]:
-        """(parent, child) pairs, one for every joint but the roots."""
-        return tuple((parent, joint) for joint, parent in enumerate(self.parents) if parent >= 0)
 
     @cached_property
     def bone_lengths(self) -> Array:

@@ -17,8 +17,32 @@ import numpy as np
 from .vectors import Array
 
 
+class Tree:
+    """Joints, each of which hangs on another.
+
+    Attributes:
+        parents: index of each joint's parent, -1 for a root; a parent comes before its children.
+        offsets: (J, 3) rest position of each joint relative to its parent.
+    """
+
+    parents: tuple[int, ...]
+    offsets: Array
+
+    @cached_property
+    def bones(self) -> tuple[tuple[int, int], ...]:
+        """(parent, child) pairs, one for every joint but the roots."""
+        return tuple((parent, joint) for joint, parent in enumerate(self.parents) if parent >= 0)
+
+    def rest_positions(self) -> Array:
+        """(J, 3) the pose of rest, for a skeleton the T-pose with the root at the origin."""
+        positions = np.array(self.offsets, dtype=np.float64)
+        for parent, joint in self.bones:
+            positions[joint] += positions[parent]
+        return positions
+
+
 @dataclass(frozen=True, eq=False)
-class Skeleton:
+class Skeleton(Tree):
     """A tree of joints.
 
     Attributes:
@@ -38,11 +62,6 @@ class Skeleton:
     def num_joints(self) -> int:
         """Number of joints."""
         return len(self.parents)
-
-    @cached_property
-    def bones(self) -> tuple[tuple[int, int], ...]:
-        """(parent, child) pairs, one for every joint but the root."""
-        return tuple((parent, joint) for joint, parent in enumerate(self.parents) if parent >= 0)
 
     @cached_property
     def children(self) -> tuple[tuple[int, ...], ...]:
@@ -70,13 +89,6 @@ class Skeleton:
     def index(self) -> Callable[[str], int]:
         """The index of a joint by name; raises ``KeyError`` for another name."""
         return {name: joint for joint, name in enumerate(self.joint_names)}.__getitem__
-
-    def rest_positions(self) -> Array:
-        """(J, 3) the T-pose, root at the origin."""
-        positions = np.array(self.offsets, dtype=np.float64)
-        for parent, joint in self.bones:
-            positions[joint] += positions[parent]
-        return positions
 
 
 def _topology(name: str, joints: list[tuple[str, str | None]], offsets: Array | None = None) -> Skeleton:

@@ -34,15 +34,15 @@ class SamplerError(InputError):
     """The sampler or its number of steps cannot be used."""
 
 
-def cosine_betas(timesteps: int = TRAIN_TIMESTEPS, *, max_beta: float = 0.999) -> np.ndarray:
-    """β_t = min(1 − ᾱ(t+1)/ᾱ(t), max_beta) with ᾱ(u) = cos²((u/T + 0.008)/1.008 · π/2); float64, (T,).
+def cosine_betas() -> np.ndarray:
+    """β_t = min(1 − ᾱ(t+1)/ᾱ(t), 0.999) with ᾱ(u) = cos²((u/T + 0.008)/1.008 · π/2); float64, (T,).
 
     By hand, since the `betas_for_alpha_bar` of `diffusers` gives float32, and ᾱ of chosen timesteps is formed
     from these.
     """
-    u = np.arange(timesteps + 1, dtype=np.float64) / timesteps
+    u = np.arange(TRAIN_TIMESTEPS + 1, dtype=np.float64) / TRAIN_TIMESTEPS
     alpha_bar = np.cos((u + 0.008) / 1.008 * math.pi / 2) ** 2
-    return np.minimum(1 - alpha_bar[1:] / alpha_bar[:-1], max_beta)
+    return np.minimum(1 - alpha_bar[1:] / alpha_bar[:-1], 0.999)
 
 
 class Scheduler(Protocol):
@@ -60,17 +60,16 @@ class Scheduler(Protocol):
 
 
 class NoiseSchedule:
-    """The forward process q(xt | x0) with its factors worked out once, for training.
+    """The forward process q(xt | x0) on :func:`cosine_betas`, with its factors worked out once, for training.
 
     By hand, since the `add_noise` of `diffusers` takes √(1 − ᾱ) of a float32 ᾱ, which is off by 6e-6 at small t.
 
     `sqrt_alphas_cumprod` and `sqrt_one_minus_alphas_cumprod` are float32 (T,) on `device`.
     """
 
-    def __init__(self, betas: np.ndarray | None = None, *, device: torch.device | str = "cpu") -> None:
-        betas = cosine_betas() if betas is None else np.asarray(betas, dtype=np.float64)
-        alphas_cumprod = torch.from_numpy(np.cumprod(1 - betas))
-        self.timesteps = len(betas)
+    def __init__(self, *, device: torch.device | str = "cpu") -> None:
+        alphas_cumprod = torch.from_numpy(np.cumprod(1 - cosine_betas()))
+        self.timesteps = TRAIN_TIMESTEPS
         self.alphas_cumprod = alphas_cumprod.float().to(device)
         self.sqrt_alphas_cumprod = alphas_cumprod.sqrt().float().to(device)
         self.sqrt_one_minus_alphas_cumprod = (1 - alphas_cumprod).sqrt().float().to(device)

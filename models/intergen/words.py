@@ -146,9 +146,7 @@ class WordDenoiser(InterGenDenoiser):
             h = block(h, emb, keep, keep_other, *text)
         return (self.out(h) + followed).permute(1, 2, 0, 3).reshape(b, length, -1)
 
-    def guided(  # type: ignore[override]  # one more input
-        self, x: Tensor, t: Tensor, cond: Tensor, known: Tensor | None = None, *, scale: float = 3.5
-    ) -> Tensor:
+    def guided(self, x: Tensor, t: Tensor, cond: Tensor, known: Tensor | None = None, *, scale: float = 3.5) -> Tensor:
         """As `TwoPersonDenoiser.guided`, and less on what a draft says; ``known`` may have one row."""
         if known is None:
             return super().guided(x, t, cond, scale=scale)

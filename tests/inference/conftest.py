@@ -37,11 +37,28 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def reading_engine(weights: Path) -> Engine:
+    """With an untrained network that sees what is known, and drafts."""
+    return Engine(weights)
+
+
+@pytest.fixture(params=["engine", "reading_engine"])
+def either_engine(request: pytest.FixtureRequest) -> Engine:
+    """Each of the two networks."""
+    return request.getfixturevalue(request.param)
+
+
+@pytest.fixture(scope="session")
 def engine(request: pytest.FixtureRequest, weights: Path) -> Engine:
-    """With an untrained network; where planned motion is tested also with zeros in its place."""
+    """With an untrained network that sees nothing of what it is held to, which is all that is given.
+
+    Where planned motion is tested also with zeros in its place.
+    """
     made = Engine(weights)
+    pipeline = made.pipeline("intergen")
+    pipeline.model.reads_known = False
     if getattr(request, "param", None) == "zeros":
-        silence(made.pipeline("intergen"))
+        silence(pipeline)
     return made
 
 

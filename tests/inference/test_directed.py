@@ -34,21 +34,21 @@ def make(engine: Engine, parts: Sequence[Part], **changes: float) -> Duet:
     return result.duets[0]
 
 
-def test_a_span_and_a_pose_are_held_exactly(engine: Engine) -> None:
+def test_a_span_and_a_pose_are_held_exactly(either_engine: Engine) -> None:
     past = walker()[:20]
     pose = walker(angle=1.0)[40:41] + np.array([1.0, 0, 0])
     parts = [KnownFrames(0, range(20), past), KnownFrames(1, [45], pose)]
-    duet = make(engine, parts)
+    duet = make(either_engine, parts)
     np.testing.assert_allclose(duet.a.positions[:20], past, atol=1e-6)
     np.testing.assert_allclose(duet.b.positions[45], pose[0], atol=1e-6)
-    free = make(engine, [])
+    free = make(either_engine, [])
     assert np.abs(free.a.positions[:20] - past).max() > 0.1
     assert np.abs(free.b.positions[45] - pose[0]).max() > 0.1
 
 
-def test_a_draft_is_shown_and_not_held(engine: Engine) -> None:
+def test_a_draft_is_shown_and_not_held(reading_engine: Engine) -> None:
     poses, frames = walker()[::5], range(0, FRAMES, 5)
-    model = engine.pipeline("intergen").model
+    model = reading_engine.pipeline("intergen").model
     parts = [KnownFrames(0, frames, poses, soft=True), KnownPath(1, [0], np.zeros((1, 2)))]
     scene = directed(model, FRAMES, parts)
     assert scene.draft is not None and scene.draft.any() and scene.given is not None
@@ -58,8 +58,8 @@ def test_a_draft_is_shown_and_not_held(engine: Engine) -> None:
 
 
 @pytest.mark.parametrize("strictness", [0.0, 0.5, 1.0])
-def test_a_free_draft_is_shown_and_never_held(engine: Engine, strictness: float) -> None:
-    model = engine.pipeline("intergen").model
+def test_a_free_draft_is_shown_and_never_held(reading_engine: Engine, strictness: float) -> None:
+    model = reading_engine.pipeline("intergen").model
     place = KnownPath(0, [0, 30], np.zeros((2, 2)))
     free = KnownFrames(0, range(0, FRAMES, 5), walker()[::5], range(22), soft=True, free=True)
     scene = directed(model, FRAMES, [place, free], strictness)
@@ -68,8 +68,8 @@ def test_a_free_draft_is_shown_and_never_held(engine: Engine, strictness: float)
     assert not any(isinstance(part, KnownFrames) for part in scene.parts)
 
 
-def test_a_draft_is_filled_in_between_near_poses(engine: Engine) -> None:
-    model = engine.pipeline("intergen").model
+def test_a_draft_is_filled_in_between_near_poses(reading_engine: Engine) -> None:
+    model = reading_engine.pipeline("intergen").model
     drafted = [draft_of(model, FRAMES, [KnownFrames(0, at, walker()[at], soft=True)]) for at in ([0, 16], [0, 48])]
     said = [draft.view(1, -1, 2, 2, KNOWN_FEATURES)[:, :, 0, :, FEATURES + 3].flatten().sum() for draft in drafted]
     assert said[0] >= 16 / model.layout.frames_per_knot, "every knot between them"
@@ -88,9 +88,9 @@ def test_a_draft_faces_as_the_joints_that_it_has() -> None:
     assert isinstance(path, KnownPath) and path.headings is None
 
 
-def test_the_stricter_a_plan_the_nearer_are_its_poses(engine: Engine) -> None:
+def test_the_stricter_a_plan_the_nearer_are_its_poses(reading_engine: Engine) -> None:
     poses, frames, total = walker()[::5], range(0, FRAMES, 5), 8
-    model = engine.pipeline("intergen").model
+    model = reading_engine.pipeline("intergen").model
     parts = [KnownFrames(0, frames, poses, soft=True), KnownPath(1, [0], np.zeros((1, 2)))]
     x = torch.randn(1, model.layout.num_tokens(FRAMES), 2 * model.layout.token_features)
     off: list[float] = []
@@ -104,9 +104,9 @@ def test_the_stricter_a_plan_the_nearer_are_its_poses(engine: Engine) -> None:
     assert strict.draft is None and strict.parts == parts, "what is finished meets the poses"
 
 
-def test_a_given_heading_is_shown_to_a_network_that_sees_it(engine: Engine) -> None:
+def test_a_given_heading_is_shown_to_a_network_that_sees_it(reading_engine: Engine) -> None:
     way = walker()[:, 0][:, [0, 2]]
-    turned = [make(engine, [KnownPath(0, range(FRAMES), way, np.full(FRAMES, h))]) for h in (0.0, 2.0)]
+    turned = [make(reading_engine, [KnownPath(0, range(FRAMES), way, np.full(FRAMES, h))]) for h in (0.0, 2.0)]
     assert not np.allclose(turned[0].a.positions, turned[1].a.positions, atol=1e-4)
 
 

@@ -57,7 +57,7 @@ def test_damping_zero_is_the_plain_sampler_bit_for_bit(engine: Engine) -> None:
 
     generator = engine.pipeline("intergen")
     model, layout = generator.model, generator.model.layout
-    condition, _ = generator.condition(request.prompt)
+    condition = generator.conditioning(request).condition
     x = sample_noise(request.seed, 1, (layout.num_tokens(60), 2 * layout.token_features))
     scheduler = make_scheduler("ddim", request.steps, spacing="top")
     with torch.no_grad():

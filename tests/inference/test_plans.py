@@ -86,20 +86,20 @@ def changed_stage(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("asked", [STORY, DRAWN, SPLIT, AS_IT_IS], ids=["story", "drawn", "split", "as it is"])
 def test_a_replayed_plan_gives_the_same_bytes_whatever_the_words_now_mean(
-    engine: Engine, monkeypatch: pytest.MonkeyPatch, asked: Any
+    reading_engine: Engine, monkeypatch: pytest.MonkeyPatch, asked: Any
 ) -> None:
-    first = run(engine, asked)
+    first = run(reading_engine, asked)
     manifest = json.loads(json.dumps(first.manifest))
-    monkeypatch.setattr(engine.pipeline("intergen").scenes, "parts", Parts())
+    monkeypatch.setattr(reading_engine.pipeline("intergen").scenes, "parts", Parts())
     with monkeypatch.context() as forgetful:
         forgotten_reader(forgetful)
         changed_stage(forgetful)
-        replayed = run(engine, replace(asked, plan=kept_plan(manifest)))
+        replayed = run(reading_engine, replace(asked, plan=kept_plan(manifest)))
     for sample in range(asked.samples):
         np.testing.assert_array_equal(positions(replayed, sample), positions(first, sample))
     assert replayed.manifest == first.manifest
     changed_stage(monkeypatch)
-    read_now = positions(run(engine, asked))
+    read_now = positions(run(reading_engine, asked))
     assert read_now.shape != positions(first).shape or np.abs(read_now - positions(first)).max() > 1e-3
 
 
@@ -134,25 +134,25 @@ def _asked() -> Iterator[Any]:
 
 
 def test_twenty_results_are_read_once_and_made_again_by_a_reader_that_knows_nothing(
-    engine: Engine, monkeypatch: pytest.MonkeyPatch
+    reading_engine: Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kept = []
     with monkeypatch.context() as reader:
         for ask in _asked():
             texts = reading(reader)
             asked = ask()
-            result = run(engine, asked)
+            result = run(reading_engine, asked)
             sentences = {beat.sentence for beat in asked.beats} if isinstance(asked, SceneRequest) else {asked.prompt}
             assert sorted(texts) == sorted(sentences)
             kept.append((asked, result))
     assert len(kept) == 20 and sum(bool(result.duets[0].things) for _, result in kept) >= 4
     assert sum(result.duets[0].looks != UNSAID for _, result in kept) >= 5
-    monkeypatch.setattr(engine.pipeline("intergen").scenes, "parts", Parts())
+    monkeypatch.setattr(reading_engine.pipeline("intergen").scenes, "parts", Parts())
     forgotten_reader(monkeypatch)
     for asked, first in kept:
         manifest = json.loads(json.dumps(first.manifest))
         own = replayed_fields(asked, manifest)
-        again = run(engine, replace(asked, plan=kept_plan(manifest), **own))
+        again = run(reading_engine, replace(asked, plan=kept_plan(manifest), **own))
         for one, other in zip(first.duets, again.duets, strict=True):
             np.testing.assert_array_equal(one.positions, other.positions)
             assert one.looks == other.looks and one.grips == other.grips

@@ -79,7 +79,7 @@ def test_the_network_sees_the_given_person_clean_at_every_step(engine: Engine) -
     expected = scene.placement.to_network(waver().positions)
     np.testing.assert_allclose(decoded, expected, atol=0.01)
 
-    condition, _ = generator.condition(request.prompt)
+    condition = generator.conditioning(request).condition
     x = sample_noise(request.seed, 1, (layout.num_tokens(60), 2 * half))
     scheduler = make_scheduler("ddim", request.steps, spacing="top")
     with torch.no_grad():

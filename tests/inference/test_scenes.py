@@ -160,15 +160,15 @@ def test_a_sentence_of_several_beats_is_split_by_plain_generation_too(engine: En
     assert np.abs(positions(whole) - positions(made)).max() > 0.01 and not any("beats" in n for n in whole.notes)
 
 
-def test_a_network_that_reads_them_is_given_each_persons_own_words(engine: Engine) -> None:
-    pipeline = engine.pipeline("intergen")
+def test_a_network_that_reads_them_is_given_each_persons_own_words(reading_engine: Engine) -> None:
+    pipeline = reading_engine.pipeline("intergen")
     beats = [Beat(a="waves with both hands"), Beat(b="waves with both hands"), Beat("They wave.")]
     first, second, neither = (pipeline.words("They wave.", Plan(), beat.alone, 4.3).condition for beat in beats)
     assert first[:, 1].any() and not first[:, 2].any()
     assert torch.equal(first[:, 1], second[:, 2]) and not second[:, 1].any()
     assert not neither[:, 1:].any() and torch.allclose(neither[:, 0], first[:, 0, : neither.shape[2]], atol=1e-5)
     motions = [
-        positions(run(engine, SceneRequest(beats=(beat,), **QUICK)))
+        positions(run(reading_engine, SceneRequest(beats=(beat,), **QUICK)))
         for beat in (Beat("They wave.", seconds=2.0), Beat("They wave.", b="waves slowly", seconds=2.0))
     ]
     assert np.abs(motions[0] - motions[1]).max() > 1e-3

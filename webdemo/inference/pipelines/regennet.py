@@ -187,8 +187,8 @@ class ReGenNetPipeline:
         # A last frame on a knot starts an interval that offline sampling does not need.
         noise = sample_noise(request.seed, request.samples, (model.num_rows(frames) + 1, FEATURES))
         rows, begin = iter(noise.transpose(0, 1)), self._begin(request, placement)
-        sampling = {"steps": request.steps, "scale": request.guidance}
-        stream = CompactStream(model, condition, **sampling, max_frames=frames, begin=begin)
+        steps, scale = request.steps, request.guidance
+        stream = CompactStream(model, condition, steps=steps, scale=scale, max_frames=frames, begin=begin)
 
         def answer(pose: Array) -> tuple[Array, Array]:
             made, contacts = stream.step(torch.from_numpy(pose).float(), noise=rows)
@@ -271,8 +271,8 @@ class ReleasedReGenNetPipeline(ReGenNetPipeline):
     def _stream(self, request: ReactRequest, condition: Any, placement: Placement) -> Answer:
         frames = request.actor.num_frames
         noise = iter(sample_noise(request.seed, request.samples, (frames, ROWS, ROW_WIDTH)).transpose(0, 1))
-        known = {"steps": request.steps, "batch": request.samples, "action": condition}
-        stream = ReactionStream(self.network, **known, max_frames=frames)
+        steps, batch = request.steps, request.samples
+        stream = ReactionStream(self.network, steps=steps, batch=batch, action=condition, max_frames=frames)
 
         def answer(pose: Array) -> tuple[Array, Array]:
             seen = encode(pose[None])[..., 0].expand(request.samples, -1, -1)

@@ -186,7 +186,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         """The denoiser's input on what is known of a scene, where it reads any."""
         if not self.model.reads_known:
             return {}
-        known = cast(CompactInterGen, self.model).shown(None if given is None else given.features, scene.draft)
+        known = cast(Any, self.model).shown(None if given is None else given.features, scene.draft)
         return {} if known is None else {"known": known}
 
     def _duets(self, x: Tensor, scene: Scene, finish: Finish) -> tuple[Duet, ...]:
