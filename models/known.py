@@ -261,9 +261,9 @@ class Hold:
             seen, wanted = self._basis[mask].double(), self._wanted[at][:, mask].double()
             gain = torch.linalg.solve(seen.T @ seen + _SOFT * cost, seen.T)
             found.append((at, (wanted @ gain.T).float(), (unit - gain @ seen).float()))
-        at, offset, moves = zip(*found, strict=True)
-        group = torch.arange(len(at)).repeat_interleave(torch.tensor([len(each) for each in at]))
-        return Moves(torch.cat(at), group, torch.cat(offset), torch.stack(moves))
+        columns, offsets, moves = zip(*found, strict=True)
+        group = torch.arange(len(columns)).repeat_interleave(torch.tensor([len(each) for each in columns]))
+        return Moves(torch.cat(columns), group, torch.cat(offsets), torch.stack(moves))
 
     @property
     def held(self) -> Held:

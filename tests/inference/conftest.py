@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 import torch
 
+from models.intergen import InterGenDenoiser
 from models.intergen.compact import CaptionBank, CompactConfig, CompactInterGen, save_folder
 from models.motion_tokens import encode
-from models.text import MiniLM
+from models.text import MiniLM, TextConditioner
 from motion import SMPL22
 from webdemo.cli.scoring import silence
 from webdemo.inference.engine import Engine
@@ -15,12 +16,32 @@ from webdemo.inference.engine import Engine
 CAPTIONS = ("Two people shake hands.", "One person waves.", "They walk away from each other.")
 
 
-def tiny_weights(folder: Path) -> Path:
+def draw(module: torch.nn.Module) -> None:
+    """Random numbers for all parameters: the zero-initialised layers would hide what the input does."""
+    for parameter in module.parameters():
+        torch.nn.init.normal_(parameter, std=0.05)
+
+
+def draw_plain(model: CompactInterGen) -> None:
+    """The same for InterGen's own parts alone; those that read what each does and what is given say nothing."""
+    torch.manual_seed(0)
+    own = InterGenDenoiser(model.denoiser.config)
+    roles = torch.nn.ParameterList([torch.randn(2, model.config.latent_dim)])
+    conditioner = TextConditioner(model.conditioner.config)
+    for part in (roles, own, conditioner):
+        draw(part)
+    for parameter in model.denoiser.parameters():
+        torch.nn.init.zeros_(parameter)
+    model.denoiser.role_embedding.data.copy_(roles[0])
+    model.denoiser.load_state_dict(own.state_dict(), strict=False)
+    model.conditioner.load_state_dict(conditioner.state_dict())
+
+
+def tiny_weights(folder: Path, *, plain: bool) -> Path:
     torch.manual_seed(0)
     sizes = {"latent_dim": 32, "ff_size": 32, "num_layers": 2, "num_heads": 2, "cond_dim": 64, "text_layers": 1}
     model = CompactInterGen(CompactConfig(**sizes))
-    for parameter in model.parameters():  # the zero-initialised layers would hide what the input does
-        torch.nn.init.normal_(parameter, std=0.05)
+    (draw_plain if plain else draw)(model)
     rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
     frames = model.layout.num_frames(4)
     control = encode(rest.expand(frames, -1, -1), torch.ones(frames, 4), model.layout)
@@ -33,13 +54,13 @@ def tiny_weights(folder: Path) -> Path:
 
 @pytest.fixture(scope="session")
 def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tiny_weights(tmp_path_factory.mktemp("weights"))
+    return tiny_weights(tmp_path_factory.mktemp("weights"), plain=True)
 
 
 @pytest.fixture(scope="session")
-def reading_engine(weights: Path) -> Engine:
+def reading_engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
     """With an untrained network that sees what is known, and drafts."""
-    return Engine(weights)
+    return Engine(tiny_weights(tmp_path_factory.mktemp("reading"), plain=False))
 
 
 @pytest.fixture(params=["engine", "reading_engine"])
