@@ -68,7 +68,7 @@ def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(tab: ReactTab, 
     last = steps[-1]
     assert last["player"]["value"]["title"] == "they walk"
     assert len(last["player"]["value"]["samples"][0]["roles"]) == 2
-    assert "walkers.npz" in last["readouts"]
+    assert "walkers.npz" in last["readouts"] and "<dd>2.0 s</dd>" in last["readouts"]
     duet = last["record"].result.duets[0]
     given = walking(12.0).b.positions[30:90]
     assert duet.people[0 if role == "a" else 1].positions.tobytes() == given.tobytes()

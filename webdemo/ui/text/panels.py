@@ -127,8 +127,10 @@ def _measured(values: Mapping[str, Any]) -> Summary:
 
 
 def _asked(result: Result) -> str:
-    asked = settings(result.manifest.get("request", result.manifest))
-    items = "".join(f"<div><dt>{name}</dt><dd>{text(value)}</dd></div>" for name, value in asked)
+    asked = dict(settings(result.manifest.get("request", result.manifest)))
+    if result.duets:  # a reaction and a scene are as long as what they are made of
+        asked |= {"Seconds": f"{result.duets[0].seconds:.1f} s"}
+    items = "".join(f"<div><dt>{name}</dt><dd>{text(value)}</dd></div>" for name, value in asked.items())
     return f'<dl class="pd-asked">{items}</dl>'
 
 
