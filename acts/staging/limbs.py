@@ -11,12 +11,27 @@ import numpy as np
 
 from acts.shapes import Limb
 from motion import FPS
+from motion.kinematics import swing
 from motion.skeleton import ARMS
 from motion.smoothing import minimum_jerk
-from motion.transforms import heading_matrix
+from motion.transforms import heading, heading_matrix
 from motion.vectors import Array
 
-from .poses import HANDS, SOLE, STANDS, TOES, Turns, about, all_but, poses_of, standing, turns_of
+from .poses import (
+    HANDS,
+    JOINT,
+    SOLE,
+    STANDS,
+    TOES,
+    TRUNK,
+    Turns,
+    about,
+    all_but,
+    poses_of,
+    standing,
+    standing_by,
+    turns_of,
+)
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
 
@@ -295,10 +310,16 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
 """The movements: rotations (N, 3, 3) of joints, of how far each is held (N,) and of the seconds since it began (N,)."""
 WITH_ARMS = frozenset(("reaches down",))
 """Those that the hands belong to."""
+_BY_HEAD = frozenset(("moves head", "rolls head", "nods", "shakes head", "turns head"))
 RAISES = frozenset(
     ("raises leg", "raises knee", "swings leg", "kicks", "stamps", "stands on one leg", "crosses legs", "lunges")
 )
 """Those in which a foot leaves the floor."""
+
+
+def only_by_head(limbs: Sequence[Limb]) -> bool:
+    """True for movements that leave the body below the chest to itself."""
+    return _BY_HEAD.issuperset(limb.does for limb in limbs)
 
 
 def limb_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part]:
@@ -317,6 +338,13 @@ def limb_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part
         stands = standing(beat.halt(person), angle, (frames + beat.start) / FPS, seed=seed + person)
         for shoulder, *arm in ARMS:
             poses[:, arm] = poses[:, [shoulder]] + stands[:, arm] - stands[:, [shoulder]]
+    if only_by_head(limbs):
+        body = standing_by(beat.halt(person), angle, frames + beat.start, 2 * seed + person)
+        neck, head = JOINT["neck"], JOINT["head"]
+        turned = heading_matrix(heading(body) - angle) @ (poses[:, [neck, head]] - poses[:, [0, neck]]).swapaxes(1, 2)
+        leans = swing(turned[..., 0], body[:, neck] - body[:, 0])
+        body[:, head] = body[:, neck] + np.einsum("nij,nj->ni", leans, turned[..., 1])
+        return [beat.known(person, frames, body, (JOINT["pelvis"], *TRUNK), kept=True)]
     busy = "ab"[person] in score.gestures or score.touch is not None
     free = HANDS if busy and not with_arms else ()
     return [beat.known(person, frames, poses, all_but(free), kept=True)]

@@ -34,5 +34,12 @@ def test_whose_hands_are_busy_is_not_drafted_as_waiting(words: str) -> None:
     assert not [part for part in poses_of(words) if part.person == 1]
 
 
+def test_who_moves_the_head_stands_as_recorded_people_do() -> None:
+    (held,), (free,) = ([part for part in poses_of("A nods.") if part.person == 0 and part.free == f] for f in (0, 1))
+    assert held.kept and not set(held.joints) & set(free.joints) and len(held.joints) + len(free.joints) == 22
+    hips = np.asarray(held.positions)[:, 0]
+    assert np.ptp(hips, axis=0).max() > 0.01, "they shift their weight"
+
+
 def test_who_has_arrived_waits_as_recorded_people_do() -> None:
     assert [part for part in poses_of("B walks up to A.") if part.person == 1 and part.free]

@@ -10,7 +10,6 @@ from acts.staging.score import Score
 from motion import FPS, SMPL22, Duet
 from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import pivoting, stepping
-from motion.idling import alive
 from motion.kinematics import project_to_skeleton
 from motion.limbs import open_limb, solve_two_bones, steadied
 from motion.metrics import compare
@@ -205,7 +204,7 @@ class FollowingCleanup:
         return self._shift[side]
 
 
-# ---- scenes: people who hold each other come close, arms go round bodies, nobody is a statue ----------
+# ---- scenes: people who hold each other come close, arms go round bodies --------------------------------
 EASES = 20
 """Frames over which a finish begins and ends: beside beats without it, and beside frames that are kept."""
 
@@ -216,23 +215,19 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
     Args:
         request: the scene's request.
         scene: (2, T, 22, 3) metres, its windows joined; frames that are kept of a given motion stay as they are.
-        seed: draws how people rest.
+        seed: draws how arms swing.
 
     Returns:
         (2, T, 22, 3) float32.
     """
     free = _made(request, scene.shape[1])
-    marks = np.zeros((6, scene.shape[1]), dtype=bool)  # palms meet, hands held; a and b still; a and b loose
+    marks = np.zeros((4, scene.shape[1]), dtype=bool)  # palms meet, hands held; a and b loose
     for beat, finish in enumerate(finishes(request)):
-        whose = (who in people for people in (finish.still, finish.loose) for who in ROLES)
-        marks[:, request.edges[beat] : request.edges[beat + 1]] = np.array([finish.reaching, finish.held, *whose])[
-            :, None
-        ]
-    shares = np.stack([eased_marks(each, EASES) for each in marks]) * free
-    raised, held, loose = shares[0], shares[1], shares[4:]
-    rests = free - shares[2:4]
+        asked = finish.reaching, finish.held, *(who in finish.loose for who in ROLES)
+        marks[:, request.edges[beat] : request.edges[beat + 1]] = np.array(asked)[:, None]
+    raised, held, *loose = np.stack([eased_marks(each, EASES) for each in marks]) * free
     swung = np.stack([swinging(scene[i], FPS, loose[i], [seed, i]) for i in (0, 1)])
-    result = alive(in_touch(swung, free, raised, held), FPS, seed, rests, loose).astype(np.float32)
+    result = in_touch(swung, free, raised, held).astype(np.float32)
     result[:, free <= 0] = scene[:, free <= 0]
     return result
 
@@ -247,12 +242,8 @@ def finishes(request: SceneRequest) -> tuple[BeatFinish, ...]:
 def finish_of(score: Score) -> BeatFinish:
     """The finish that a beat's words ask for."""
     around = any(gesture.gesture == "around" for gesture in score.gestures.values())
-    # a head that is tilted is not turned to the other
-    still = {*score.frozen, *score.limbs, *score.figures}
-    if (touch := score.touch) is not None and touch.beside:
-        still.add(touch.person)
     loose = "".join(sorted(score.loose - score.frozen))
-    return BeatFinish(bool(score.reaching), "".join(sorted(still)), score.linked and not around, loose)
+    return BeatFinish(bool(score.reaching), score.linked and not around, loose)
 
 
 def in_touch(scene: Array, free: Array, raised: Array, held: Array) -> Array:

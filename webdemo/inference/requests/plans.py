@@ -159,13 +159,11 @@ class BeatFinish:
 
     Attributes:
         reaching: whether palms meet what they reach for.
-        still: who ("", "a", "b" or "ab") does not look about or shift their weight.
         held: whether the two hold each other by the hand.
         loose: whose ("", "a", "b" or "ab") arms have nothing to do.
     """
 
     reaching: bool = False
-    still: Who = ""
     held: bool = False
     loose: Who = ""
 
