@@ -27,7 +27,7 @@ from .lifts import Carrying
 from .limbs import limb_parts, only_by_head
 from .moves import coming, meeting, towards_touched
 from .places import Standing, Way2D
-from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, standing, standing_by, upright
+from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, standing_by, upright
 from .postures import bow_parts, posture_parts, postures
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
@@ -218,7 +218,7 @@ class _Beat:
                 parts += softened(bow_parts(person, score, stretch, seed))
                 posed[person] = stands
             elif up and who in score.idle & score.frozen:
-                parts += _statue_parts(person, stretch, seed)
+                parts += _statue_parts(person, stretch)
             elif up and who in score.idle:
                 parts += _bystander_parts(person, stretch, seed)
             elif stays and up and (turned or who in score.gesturing):
@@ -337,14 +337,13 @@ def _waiting_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[in
     return [replace(stretch.known(person, at, poses, joints), soft=True, free=True)]
 
 
-def _statue_parts(person: int, stretch: Stretch, seed: int) -> list[Part]:
+def _statue_parts(person: int, stretch: Stretch) -> list[Part]:
     """The poses of a person who stands like a statue."""
     frames = stretch.every(_POSED, SETTLES if stretch.start else 0)
     if not len(frames):
         return []
-    seconds = (frames + stretch.start) / FPS
-    poses = standing(stretch.halt(person), float(stretch.stand.headings[person]), seconds, seed=seed + person)
-    return [stretch.known(person, frames, poses)]
+    pose = upright(stretch.halt(person), float(stretch.stand.headings[person]))
+    return [stretch.known(person, frames, np.repeat(pose[None], len(frames), axis=0))]
 
 
 def _apart(story: Story, window: Window, placement: Placement) -> list[Part]:

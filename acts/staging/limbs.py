@@ -17,21 +17,7 @@ from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
 from motion.vectors import Array
 
-from .poses import (
-    HANDS,
-    JOINT,
-    SOLE,
-    STANDS,
-    TOES,
-    TRUNK,
-    Turns,
-    about,
-    all_but,
-    poses_of,
-    standing,
-    standing_by,
-    turns_of,
-)
+from .poses import HANDS, JOINT, SOLE, STANDS, TOES, TRUNK, Turns, about, all_but, poses_of, standing_by, turns_of
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
 
@@ -325,7 +311,7 @@ def only_by_head(limbs: Sequence[Limb]) -> bool:
 def limb_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part]:
     """The body of a person who moves single limbs, as far as it falls into a window.
 
-    Their arms hang, unless their hands have something else to do: a network that is free there crosses them.
+    Their arms are those of recorded people who wait, unless their hands have something else to do.
     """
     frames = beat.every(OFTEN, SETTLES // 2 if beat.start else 0)
     if not len(frames):
@@ -334,17 +320,16 @@ def limb_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part
     angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
     poses = limbed(limbs, beat.halt(person), angle, frames / FPS, seconds)
     with_arms = any(limb.does in WITH_ARMS for limb in limbs)
-    if not with_arms:
-        stands = standing(beat.halt(person), angle, (frames + beat.start) / FPS, seed=seed + person)
-        for shoulder, *arm in ARMS:
-            poses[:, arm] = poses[:, [shoulder]] + stands[:, arm] - stands[:, [shoulder]]
+    waits = standing_by(beat.halt(person), angle, frames + beat.start, 2 * seed + person)
     if only_by_head(limbs):
-        body = standing_by(beat.halt(person), angle, frames + beat.start, 2 * seed + person)
         neck, head = JOINT["neck"], JOINT["head"]
-        turned = heading_matrix(heading(body) - angle) @ (poses[:, [neck, head]] - poses[:, [0, neck]]).swapaxes(1, 2)
-        leans = swing(turned[..., 0], body[:, neck] - body[:, 0])
-        body[:, head] = body[:, neck] + np.einsum("nij,nj->ni", leans, turned[..., 1])
-        return [beat.known(person, frames, body, (JOINT["pelvis"], *TRUNK), kept=True)]
+        turned = heading_matrix(heading(waits) - angle) @ (poses[:, [neck, head]] - poses[:, [0, neck]]).swapaxes(1, 2)
+        leans = swing(turned[..., 0], waits[:, neck] - waits[:, 0])
+        waits[:, head] = waits[:, neck] + np.einsum("nij,nj->ni", leans, turned[..., 1])
+        return [beat.known(person, frames, waits, (0, *TRUNK), kept=True)]
+    if not with_arms:
+        for shoulder, *arm in ARMS:
+            poses[:, arm] = poses[:, [shoulder]] + waits[:, arm] - waits[:, [shoulder]]
     busy = "ab"[person] in score.gestures or score.touch is not None
     free = HANDS if busy and not with_arms else ()
     return [beat.known(person, frames, poses, all_but(free), kept=True)]

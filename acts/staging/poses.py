@@ -43,8 +43,6 @@ FLAT = tuple(joint for joint in ALL if joint not in HANDS)
 TRUNK = (JOINT["spine1"], *(joint for joint in FLAT if joint not in LOWER))
 """Joints of the trunk, the head and the shoulders."""
 TOES = (JOINT["left_foot"], JOINT["right_foot"])
-_UNALIKE = np.array([0.06, 0.1, 0.15])
-"""Radians by which each arm of a person who stands hangs closer, further ahead and more bent, or less, than usual."""
 BOTH_SIDES = (("left", 1.0), ("right", -1.0))
 """Sides of the body, with the sign of their x for a person who faces +Z."""
 
@@ -52,39 +50,6 @@ BOTH_SIDES = (("left", 1.0), ("right", -1.0))
 def all_but(free: Collection[int]) -> list[int]:
     """All joints of a body but some."""
     return [joint for joint in ALL if joint not in free]
-
-
-def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Array:
-    """A standing person with hanging arms who shifts their weight a little.
-
-    Args:
-        place: (2,) x and z of the pelvis in metres.
-        angle: heading in radians from +Z towards +X.
-        seconds: (N,) moments.
-        seed: draws the phases of the sway, and how each arm hangs.
-
-    Returns:
-        (N, 22, 3) metres, the feet on the floor and at one place.
-    """
-    rng = np.random.default_rng(seed)
-    phases, hangs = rng.uniform(0, 2 * np.pi, 4), _UNALIKE * rng.uniform(-1, 1, (2, 3))
-    sway = [
-        np.sin(2 * np.pi * np.asarray(seconds) / period + phase)
-        for period, phase in zip((5.3, 3.9, 7.1, 4.4), phases, strict=True)
-    ]
-    turns: Turns = {
-        "pelvis": about(1, angle) @ about(2, 0.012 * sway[0]),
-        "spine2": about(2, -0.02 * sway[0]) @ about(1, 0.03 * sway[1]),
-        "neck": about(0, 0.05 + 0.02 * sway[1]),
-        "head": about(1, 0.1 * sway[2]),
-    }
-    for (side, sign), arm, (close, ahead, bent) in zip(BOTH_SIDES, (sway[3], sway[1]), hangs, strict=True):
-        turns[f"{side}_shoulder"] = about(2, -sign * (1.4 + close + 0.015 * arm)) @ about(0, 0.05 + ahead + 0.03 * arm)
-        turns[f"{side}_elbow"] = about(1, -sign * (0.3 + bent + 0.06 * arm))
-        turns[f"{side}_hip"] = about(2, -sign * 0.02 - 0.012 * sway[0]) @ about(0, STANDS["hip"])
-        turns[f"{side}_knee"] = about(0, STANDS["knee"])
-        turns[f"{side}_ankle"] = about(0, STANDS["ankle"])
-    return _on_floor(poses_of(turns, len(seconds)), place, angle)
 
 
 _SITS: Mapping[str, float] = {"hip": -1.45, "knee": 1.5, "ankle": -0.05, "shoulder": 1.2, "elbow": 0.6, "spine": 0.08}

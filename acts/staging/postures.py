@@ -40,7 +40,7 @@ from .poses import (
     lying,
     rising,
     seated,
-    standing,
+    standing_by,
     stooping,
     upright,
 )
@@ -230,8 +230,8 @@ def bow_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part]
     frames = beat.every(_BOWS, SETTLES // 2 if beat.start else 0)
     if not len(frames):  # of a beat of which only the way to the next one is in the window
         return []
-    angle, seconds = float(beat.stand.headings[person]), (frames + beat.start) / FPS
-    stands = standing(beat.halt(person), angle, seconds, seed=seed + person)
+    angle = float(beat.stand.headings[person])
+    stands = standing_by(beat.halt(person), angle, frames + beat.start, 2 * seed + person)
     late, lean = late_by(seed, person), DEEP if bows.deep else BOWED
     poses = bowed(stands, angle, frames / FPS - late, beat.frames / FPS - late, bows.times, lean)
     return [beat.known(person, frames, poses, _ABOVE)]

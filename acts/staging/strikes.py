@@ -12,12 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from motion import FPS
 from motion.transforms import heading_matrix
 from motion.vectors import Array
 
 from .places import Course
-from .poses import HANDS, JOINT, TRUNK, bending, standing, upright
+from .poses import HANDS, JOINT, TRUNK, bending, upright
 from .postures import DUCKING
 from .score import SIDES, Score, Strike
 from .window import KnownFrames, Stretch
@@ -228,12 +227,9 @@ def _rests(struck: Strike, after: Mapping[int, int], courses: Sequence[Course], 
     for person in {"ab".index(who) for who in struck.turns} & after.keys():
         frames = stretch.shown(np.arange(after[person] + RESTS, stretch.frames, EVERY))
         course = courses[person]
-        poses = [
-            standing(course.places[frame], float(course.headings[frame]), np.array([frame / FPS]), seed=person)
-            for frame in frames
-        ]
+        poses = [upright(course.places[frame], float(course.headings[frame])) for frame in frames]
         if poses:
-            still = np.concatenate(poses)
+            still = np.stack(poses)
             found.append(stretch.known(person, frames, still - still[:, :1], [*TRUNK, *HANDS]))
     return found
 
