@@ -9,17 +9,15 @@ import argparse
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from acts.staging.poses import RATE
 from motion import SMPL22, InputError
 from motion.formats.files import replacing
 from motion.transforms import canonicalize
+from motion.vectors import Array
 from training.core.shell import exit_code
 
 from .corpus.sources import FPS, load_sources
-
-Array = NDArray[np.floating]
 
 STILL = 0.2
 """Metres a second: slower than that in all joints, a body is still."""

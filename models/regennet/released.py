@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from models.errors import WeightsError
@@ -20,10 +19,9 @@ from models.weights_io import Uninitialised
 from motion import SMPL22
 from motion.kinematics import fit_rotations, forward_kinematics
 from motion.representation import from_6d
+from motion.vectors import Array
 
 from .network import NETWORK, ReGenNet, from_released
-
-Array = NDArray[np.floating]
 
 JOINTS, ROWS = 55, 56
 BODY = SMPL22.num_joints

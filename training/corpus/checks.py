@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.skeleton import FEET, SMPL22
+from motion.vectors import Array
 
 from .compose import FPS
 from .cues import Scene
 
-Array = NDArray[np.floating]
 TRUNK = tuple(SMPL22.index(name) for name in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"))
 _FLYING = (
     "run jump jumping dance spin crawl somersault cartwheel kick push fall cheer chase throw rage swing punch "

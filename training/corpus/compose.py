@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from motion.cleaning import foot_contacts, plant_feet
@@ -19,9 +18,8 @@ from motion.kinematics import fit_rotations, forward_kinematics, global_rotation
 from motion.skeleton import SMPL22
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
-from motion.vectors import slerp, wrapped
+from motion.vectors import Array, slerp, wrapped
 
-Array = NDArray[np.floating]
 FPS = 30
 ARMS = {
     side: tuple(SMPL22.index(f"{side}_{joint}") for joint in ("collar", "shoulder", "elbow", "wrist"))

@@ -16,15 +16,13 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel
 
 from acts import Act, Plan, Relation
 from acts.lexicon import Entry, lexicon
 from motion import InputError
+from motion.vectors import Array
 
-Array = NDArray[np.floating]
 STILL = "stand-still"
 """The entry of a person who does nothing."""
 WORDS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("words.toml").read_text(encoding="utf-8"))

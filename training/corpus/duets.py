@@ -10,21 +10,18 @@ from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import binary_opening, uniform_filter1d
 
 from motion import InputError
 from motion.retarget import retarget_together
 from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, heading
-from motion.vectors import runs
+from motion.vectors import Array, runs
 
 from .compose import FPS
 from .cues import Beat, Scene
 from .sources import read_upright, unpacked
 from .telling import describe
-
-Array = NDArray[np.floating]
 
 SALSA = "cmu-salsa"
 """The folder of the takes."""

@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.io import loadmat
 from scipy.ndimage import median_filter
 
@@ -25,11 +24,9 @@ from motion.ik import body_scale, fit_skeleton
 from motion.kinematics import project_to_skeleton
 from motion.skeleton import K3HI15, SBU15, SMPL22, Skeleton
 from motion.transforms import canonicalize, heading_matrix, resample
-from motion.vectors import wrapped
+from motion.vectors import Array, wrapped
 
 from .sources import unpacked
-
-Array = NDArray[np.floating]
 
 
 @dataclass(frozen=True)

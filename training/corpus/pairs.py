@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.cleaning import foot_contacts, plant_feet
 from motion.skeleton import SMPL22
 from motion.smoothing import eased_marks
 from motion.transforms import canonicalize, facing
-from motion.vectors import unit
+from motion.vectors import Array, unit
 
 from .checks import foot_skate
 from .compose import ARMS
@@ -24,8 +23,6 @@ from .cues import STILL, Beat, Scene
 from .kinect import FPS, RELEASES, Pair, fitted, read_release
 from .sources import kept
 from .telling import describe
-
-Array = NDArray[np.floating]
 
 CACHE = "pairs-4.npz"
 SHOWS = {

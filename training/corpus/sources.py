@@ -26,7 +26,6 @@ from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation, Slerp
 
@@ -40,10 +39,10 @@ from motion.retarget import retarget
 from motion.rigs import RigMotion
 from motion.skeleton import SMPL22, Skeleton
 from motion.transforms import canonicalize, resample
+from motion.vectors import Array
 
 from .cues import SourceClip
 
-Array = NDArray[np.floating]
 Described = tuple[str, str, str | None, str, str]
 """Action, style, side, source and data set of a recording, as in :class:`SourceClip`."""
 logger = logging.getLogger(__name__)

@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 
 from models.motion_tokens import decode
 from motion import Duet, InputError
@@ -28,13 +27,13 @@ from motion.metrics.generation import (
     multimodality,
     r_precision,
 )
+from motion.vectors import Array
 from training.core.shell import add_options, exit_code, write_scores
 from training.core.text_features import encoded
 from training.evaluate.extractor import Extractor, load_extractor
 from training.prepare import Scenes, load
 from webdemo.inference import Engine, GenerateRequest, Result
 
-Array = NDArray[np.floating]
 Task = tuple[str, int]
 """A caption, and frames at 30 fps."""
 Draw = Callable[[Sequence[Task], int], list[Duet]]

@@ -14,14 +14,12 @@ from itertools import pairwise
 import numpy as np
 import torch
 import torch.nn.functional as F
-from numpy.typing import NDArray
 from torch import Tensor, nn
 from torch.nn.utils.rnn import pack_padded_sequence, pad_packed_sequence
 
 from motion.metrics.generation import frechet_distance
+from motion.vectors import Array
 from training.core import loop
-
-Array = NDArray[np.floating]
 
 
 class DeepGRU(nn.Module):

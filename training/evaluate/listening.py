@@ -14,13 +14,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import InputError
 from motion.transforms import heading, heading_matrix
+from motion.vectors import Array
 from training.core.shell import exit_code
-
-Array = NDArray[np.floating]
 
 
 def poses(positions: Array) -> Array:

@@ -12,17 +12,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion.cleaning import foot_contacts
 from motion.formats.files import write_text
 from motion.skeleton import FEET
+from motion.vectors import Array
 from training.core.shell import add_options, exit_code
 from training.trainers.prediction import Windows
 from webdemo.inference.pipelines.predictor import PredictorPipeline
 from webdemo.inference.requests.predict import mean_steps
 
-Array = NDArray[np.floating]
 Predict = Callable[[Array], Array]
 """(N, past, J, 3) metres → (N, future, J, 3)."""
 

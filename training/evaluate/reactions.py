@@ -19,19 +19,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import Clip, Duet, InputError
 from motion.metrics import summary
 from motion.metrics.generation import frechet_distance, interval
+from motion.vectors import Array
 from training.core.shell import add_options, exit_code, write_scores
 from training.corpus.pairs import Pair, load_pairs
 from training.evaluate.deep_gru import accuracy, deep_features, fit, measured
 from webdemo.inference import Engine, ReactRequest, Result
 from webdemo.inference.method import WEIGHTS
 from webdemo.inference.pipelines.nearest import Bank
-
-Array = NDArray[np.floating]
 
 _OFFLINE = {"model": "regennet", "mode": "offline", "steps": 5, "damping": 0.0}
 _ONLINE = {"model": "regennet", "mode": "online", "steps": 5}

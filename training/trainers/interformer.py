@@ -26,7 +26,6 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from models.interformer.compact import FPS, JOINTS_15, CompactInterFormer, CompactInterFormerConfig
@@ -36,12 +35,11 @@ from models.weights_io import common
 from motion import InputError
 from motion.skeleton import SBU15
 from motion.transforms import canonicalize, mirrored, resample, turn
+from motion.vectors import Array
 from training.core.loop import Loop
 from training.core.shell import train
 from training.corpus.pairs import load_pairs
 from training.trainers.regennet import distance_loss
-
-Array = NDArray[np.floating]
 
 RECORDED_FPS = 30.0
 SHORTEST = 9

@@ -11,18 +11,16 @@ from typing import Any
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from models.weights_io import save_network
 from motion import SMPL22, InputError
 from motion.transforms import mirrored
+from motion.vectors import Array
 from training.core import shell
 from training.core.loop import Loop
 from training.prepare import load_corpus
 from webdemo.inference.pipelines.predictor import to_last_pose
-
-Array = NDArray[np.floating]
 
 
 class Windows:

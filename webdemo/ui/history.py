@@ -29,7 +29,6 @@ class Entry:
         links: how many links open it for others.
         tags: words that its owner put on it.
         note: what its owner wrote about it.
-        frame: the frame that the note is about.
         thumbnail: as :func:`webdemo.view.thumbnail.thumbnail` makes it; "" where there is none.
     """
 
@@ -44,7 +43,6 @@ class Entry:
     links: int = 0
     tags: tuple[str, ...] = ()
     note: str = ""
-    frame: int | None = None
     thumbnail: str = field(default="", repr=False)
 
 
@@ -59,7 +57,6 @@ class Search:
         tag: one of its tags; "" for all.
         starred: only those that are kept.
         limit: how many at most.
-        offset: how many of the newest are left out.
     """
 
     words: str = ""
@@ -68,7 +65,6 @@ class Search:
     tag: str = ""
     starred: bool = False
     limit: int = 60
-    offset: int = 0
 
 
 @dataclass(frozen=True)
@@ -182,16 +178,9 @@ class HistoryLike(Protocol):
         """Marks a run as one to keep, or no longer."""
 
     def describe(
-        self,
-        run: str,
-        owner: str,
-        *,
-        title: str | None = None,
-        tags: str | None = None,
-        note: str | None = None,
-        frame: int | None = None,
+        self, run: str, owner: str, *, title: str | None = None, tags: str | None = None, note: str | None = None
     ) -> None:
-        """Names a run, tags it, or writes a note about one of its frames; what is None stays."""
+        """Names a run, tags it, or writes a note; what is None stays."""
 
     def remove(self, runs: Sequence[str], owner: str) -> int:
         """Takes runs out of the history; they can be restored for a while. Returns how many."""

@@ -72,7 +72,6 @@ def test_a_card_tells_everything_of_a_run() -> None:
         favourite=True,
         tags=("paper",),
         note="Hands.",
-        frame=4,
         request={
             "kind": "react",
             "model": "regennet",

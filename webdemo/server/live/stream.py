@@ -13,18 +13,16 @@ from typing import Any
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
-from numpy.typing import NDArray
 
 from motion import FPS, SMPL22, InputError
 from motion.things import Thing
+from motion.vectors import Array
 from motion.video import Landmarks
 from motion.video.following import FollowedPerson
 from motion.video.landmarks import landmarks_of
 from webdemo.inference.requests.live import Belief, LivePartner
 from webdemo.view.payload import pack_positions
 from webdemo.view.things import thing_payload
-
-Array = NDArray[np.floating]
 
 LONGEST_GAP = 1.0
 """Seconds without a pose over which the person's motion is interpolated; a longer pause is left out."""

@@ -51,7 +51,6 @@ class Run(Table):
         name: that the owner gave it; empty for its title.
         tags: separated, begun and ended by a space.
         note: the owner's words.
-        frame: the frame that ``note`` is about.
         thumbnail: of its motion.
         kept: how its tab was set, as JSON.
         part_of: the run whose grid or comparison this one is a part of; it has no card of its own then.
@@ -75,7 +74,6 @@ class Run(Table):
     name: Mapped[str] = mapped_column(Text, default="")
     tags: Mapped[str] = mapped_column(Text, default="")
     note: Mapped[str] = mapped_column(Text, default="")
-    frame: Mapped[int | None] = mapped_column(default=None)
     thumbnail: Mapped[str] = mapped_column(Text, default="")
     kept: Mapped[str] = mapped_column(Text, default="")
     part_of: Mapped[str] = mapped_column(default="", index=True)
@@ -323,6 +321,5 @@ def entry_of(run: Run) -> Entry:
         links=sum(share.until > now for share in run.shares if not share.public),
         tags=tuple(run.tags.split()),
         note=run.note,
-        frame=run.frame,
         thumbnail=run.thumbnail,
     )

@@ -51,13 +51,7 @@ class Notebook(Sharing):
             return Found((), 0)
         mine = (Run.owner == owner, Run.removed.is_(None))
         fit = (*mine, Run.part_of == "", *_conditions(wanted))  # a part of a grid has no card of its own
-        query = (
-            select(Run)
-            .where(*fit)
-            .order_by(Run.created.desc(), Run.id)
-            .offset(max(wanted.offset, 0))
-            .limit(min(max(wanted.limit, 1), 500))
-        )
+        query = select(Run).where(*fit).order_by(Run.created.desc(), Run.id).limit(min(max(wanted.limit, 1), 500))
         with self.database.session() as session:
             total = session.scalar(select(func.count()).select_from(Run).where(*fit)) or 0
             entries = [entry_of(run) for run in session.scalars(query)]
@@ -131,16 +125,9 @@ class Notebook(Sharing):
 
     @sentences()
     def describe(
-        self,
-        run: str,
-        owner: str,
-        *,
-        title: str | None = None,
-        tags: str | None = None,
-        note: str | None = None,
-        frame: int | None = None,
+        self, run: str, owner: str, *, title: str | None = None, tags: str | None = None, note: str | None = None
     ) -> None:
-        """Names a run, tags it, or writes a note about one of its frames; what is None stays."""
+        """Names a run, tags it, or writes a note; what is None stays."""
         for name, value, most in (
             ("name", title, LONGEST_TITLE),
             ("note", note, LONGEST_NOTE),
@@ -157,7 +144,6 @@ class Notebook(Sharing):
                 row.tags += " " if row.tags else ""
             if note is not None:
                 row.note = note.strip()
-                row.frame = frame if row.note else None
 
     @sentences()
     def remove(self, runs: Sequence[str], owner: str) -> int:

@@ -128,7 +128,7 @@ def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None =
         "empty": empty,
         "removed": removed,
         "step": STEP,
-        "search": {name: asked[name] for name in asked if name not in ("limit", "offset")},
+        "search": {name: asked[name] for name in asked if name != "limit"},
     }
 
 

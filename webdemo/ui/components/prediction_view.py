@@ -6,15 +6,14 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion import Clip, Duet, stacked_positions
+from motion.vectors import Array
 from webdemo.inference.requests.predict import PredictResult, with_people
 from webdemo.view.payload import Curve, Payload, build_payload, sample_payload
 
 from .show import with_shown_roles
 
-Array = NDArray[np.floating]
 _NO_TRUTH = "The recording ends here, so there is nothing to compare with."
 
 
