@@ -55,6 +55,11 @@ class Clip:
         object.__setattr__(self, "positions", positions)
 
     @property
+    def people(self) -> tuple[Clip, ...]:
+        """This person alone."""
+        return (self,)
+
+    @property
     def num_frames(self) -> int:
         """Length in frames."""
         return len(self.positions)

@@ -96,20 +96,19 @@ def to_smpl(motion: Clip | Duet) -> Clip | Duet:
     Raises:
         InputError: if all joints of a person lie in one place.
     """
-    for clip in motion.people if isinstance(motion, Duet) else (motion,):
+    for clip in motion.people:
         if not np.ptp(clip.positions, axis=1).max() > _NO_BODY:
             raise InputError("All joints of a person lie in one place: export the motion with its bones.")
     if motion.skeleton.joint_names == SMPL22.joint_names:
         return motion
-    people = motion.people if isinstance(motion, Duet) else (motion,)
-    lowest = min(float(clip.positions[..., 1].min()) for clip in people)
-    sources = [clip.positions.astype(np.float64) - np.array([0.0, lowest, 0.0]) for clip in people]
+    lowest = min(float(clip.positions[..., 1].min()) for clip in motion.people)
+    sources = [clip.positions.astype(np.float64) - np.array([0.0, lowest, 0.0]) for clip in motion.people]
     scale = float(np.mean([body_scale(source, motion.skeleton) for source in sources]))
     fitted = [fit_skeleton(source, motion.skeleton, fps=motion.fps, scale=scale).positions for source in sources]
     floor = min(_floor_height(person) for person in fitted)
     clips = [
         replace(_finished(person - np.array([0.0, floor, 0.0]), motion.fps, clip.name), notes=clip.notes)
-        for person, clip in zip(fitted, people, strict=True)
+        for person, clip in zip(fitted, motion.people, strict=True)
     ]
     return Duet(clips[0], clips[1], motion.roles, motion.manifest) if isinstance(motion, Duet) else clips[0]
 

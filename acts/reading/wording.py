@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from .spelling import Speller
 
 import bisect
-import itertools
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 
@@ -334,7 +333,8 @@ class Text:
         """The ways to stand or move together, as "side by side", that a stretch of the original names."""
         known = vocabulary().formations
         for _, first, last in self._pieces:
-            if start <= first and last <= stop and (name := known.get(_words_of(self.original[first:last]))):
+            words = tuple(word.lower() for word, _, _ in tokens(self.original[first:last]))
+            if start <= first and last <= stop and (name := known.get(words)):
                 yield name
 
     def left_out(self) -> Iterator[tuple[int, int]]:
@@ -352,10 +352,6 @@ class Text:
         while j + 1 < len(self._pieces) and self._pieces[j][2] <= self._pieces[i][1]:
             j += 1  # a verb that was supplied stands for the word behind it
         return self._pieces[i][1], self._pieces[j][2]
-
-
-def _words_of(text: str) -> tuple[str, ...]:
-    return tuple(word.lower() for word, _, _ in tokens(text))
 
 
 def tokens(text: str) -> list[tuple[str, int, int]]:
@@ -413,13 +409,9 @@ def names(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
 
 def _verb_follows(words: list[str], i: int, is_verb: Callable[[str], bool]) -> bool:
     """True for a name before what it does: "A waves", "A slowly and sadly walks"."""
-    following = itertools.islice(words, i + 1, i + 6)
-    verb = next((word for word in following if word not in ("and", ",") and not _says_how(word)), "")
+    said = (word for word in words[i + 1 : i + 6] if not is_adverb(word) or vocabulary().is_person(word))
+    verb = next((word for word in said if word not in ("and", ",")), "")
     return verb in closed("auxiliaries") or (verb.endswith(("s", "ed")) and is_verb(verb))
-
-
-def _says_how(word: str) -> bool:
-    return is_adverb(word) and not vocabulary().is_person(word)
 
 
 def _takes_article(words: list[str], i: int) -> bool:

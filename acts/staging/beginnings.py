@@ -308,7 +308,8 @@ class Take:
         left = all(self.left["ab".index(who)] and who not in sided for who in act.agents)
         if left and act.direction is None and any(isinstance(shape, _SIDED) for shape in stage):
             update["side"] = "left"
-        if act.direction is None and act.side is None and self.clockwise and any(_is_round(shape) for shape in stage):
+        around = any(isinstance(shape, shapes.Go | shapes.Turn) and shape.way == "around" for shape in stage)
+        if act.direction is None and act.side is None and self.clockwise and around:
             update["direction"] = "clockwise"
         if act.speed == 1.0 and any(isinstance(shape, shapes.Go) for shape in stage):
             update["speed"] = self.pace
@@ -324,7 +325,3 @@ class Take:
         sine, cosine = np.sin(self.turned[0]), np.cos(self.turned[0])
         b = a + np.array([beside * cosine + ahead * sine, ahead * cosine - beside * sine])
         return replace(stand, places=np.stack([a, b]), headings=stand.headings + np.array([0.0, sum(self.turned)]))
-
-
-def _is_round(shape: shapes.Shape) -> bool:
-    return isinstance(shape, shapes.Go | shapes.Turn) and shape.way == "around"

@@ -167,10 +167,6 @@ def _reached_down(limb: Limb, held: Array, since: Array) -> Turns:
     return bent | {joint: about(0, 0.5 * down) for joint in ("spine1", "spine2", "spine3")}
 
 
-def _tiptoes(limb: Limb, held: Array, since: Array) -> Turns:
-    return {f"{side}_ankle": about(0, 0.6 * held) for side in ("left", "right")}
-
-
 def _crossed_legs(limb: Limb, held: Array, since: Array) -> Turns:
     sign = 1.0 if limb.side == "left" else -1.0
     return _leg(limb, 0.12 * held, 0.1 * held, -0.3 * held) | {
@@ -278,7 +274,7 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "lunges": _lunged,
     "stands tall": lambda limb, held, since: {},
     "reaches down": _reached_down,
-    "on tiptoe": _tiptoes,
+    "on tiptoe": lambda limb, held, since: {f"{side}_ankle": about(0, 0.6 * held) for side in ("left", "right")},
     "crosses legs": _crossed_legs,
     "leans": _leaning,
     "is dipped": _dipped,

@@ -57,8 +57,7 @@ def reading_choices(options: argparse.Namespace) -> ImportChoices:
 
 def with_notes(written: dict[str, Any], motion: Clip | Duet) -> dict[str, Any]:
     """A report with notes on how a file was read, also on stderr: which of several animations was taken, and so on."""
-    people = motion.people if isinstance(motion, Duet) else (motion,)
-    if notes := list(dict.fromkeys(note for person in people for note in person.notes)):
+    if notes := list(dict.fromkeys(note for person in motion.people for note in person.notes)):
         print("\n".join(notes), file=sys.stderr)
         written["notes"] = [*notes, *written.get("notes", ())]
     return written

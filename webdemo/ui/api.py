@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import gradio as gr
 
 import acts
-from motion import Clip, Duet, InputError
+from motion import Duet, InputError
 from motion.formats import ImportChoices, read
 from motion.retarget import to_smpl
 from webdemo.inference.methods import AUTOMATIC, methods
@@ -163,8 +163,7 @@ class Endpoint(ABC):
 def reading_notes(request: Any) -> list[str]:
     """Sentences on how well the motion that a request was given could be read."""
     given = getattr(request, "actor", None) or getattr(request, "motion", None)
-    people = given.people if isinstance(given, Duet) else (given,) if isinstance(given, Clip) else ()
-    return list(dict.fromkeys(note for person in people for note in person.notes))
+    return list(dict.fromkeys(note for person in getattr(given, "people", ()) for note in person.notes))
 
 
 class GenerateEndpoint(Endpoint):

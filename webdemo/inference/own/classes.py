@@ -175,12 +175,8 @@ class Fenced:
             wrong = "no motion of two people"
         elif any(duet.skeleton.joint_names != SMPL22.joint_names for duet in result.duets):
             wrong = "people who do not have SMPL's 22 joints"
-        elif not all(np.isfinite(person.positions).all() for d in result.duets for person in _people(d)):
+        elif not all(np.isfinite(person.positions).all() for d in result.duets for person in d.people):
             wrong = "positions that are not finite"
         if wrong:
             raise InputError(f"The model {self.name} gave {wrong}: see docs/own-model.md.")
         return result
-
-
-def _people(motion: Duet | Clip) -> tuple[Clip, ...]:
-    return motion.people if isinstance(motion, Duet) else (motion,)

@@ -167,10 +167,9 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
 
 def motion_facts(motion: Clip | Duet) -> dict[str, Any]:
     """A motion in a manifest: its name, length and the SHA-256 that represents its positions."""
-    first = motion.a if isinstance(motion, Duet) else motion
     positions = np.ascontiguousarray(stacked_positions(motion))
     digest = hashlib.sha256(positions.tobytes()).hexdigest()
-    return {"name": first.name[:100], "frames": motion.num_frames, "fps": motion.fps, "sha256": digest}
+    return {"name": motion.people[0].name[:100], "frames": motion.num_frames, "fps": motion.fps, "sha256": digest}
 
 
 def check_pose(pose: Any, what: str) -> Array:

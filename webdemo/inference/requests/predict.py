@@ -85,7 +85,7 @@ class PredictRequest:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the motion, which is named by its SHA-256."""
-        people = len(self.motion.people) if isinstance(self.motion, Duet) else 1
+        people = len(self.motion.people)
         return {
             "kind": "predict",
             "motion": {**motion_facts(self.motion), "people": people},

@@ -33,7 +33,7 @@ from typing import Any
 import numpy as np
 import tomlkit
 
-from motion import Duet, InputError
+from motion import InputError
 from motion.formats import read
 from webdemo.inference.methods import method
 from webdemo.inference.requests.actor import ROLES
@@ -235,8 +235,7 @@ def _pose(entry: Mapping[str, Any], index: int, lines: Lines, folder: Path | Non
         raise InputError(f"{where}it needs a file and a frame, or positions.")
     if folder is None:
         raise InputError(f"{where}a file is only read from the shell: give the positions of the pose in the story.")
-    motion = read(folder / entry["file"])
-    people = motion.people if isinstance(motion, Duet) else (motion,)
+    people = read(folder / entry["file"]).people
     of = entry.get("of", person if len(people) > 1 else "a")
     if of not in ("a", "b")[: len(people)]:
         raise InputError(f"{where}{entry['file']} has no person {of!r:.20}.")

@@ -140,7 +140,8 @@ class Notebook(Sharing):
             if title is not None:
                 row.name = " ".join(title.split())
             if tags is not None:
-                row.tags = "".join(f" {tag}" for tag in dict.fromkeys(_tags(tags)))
+                named = (tag.strip("#") for tag in tags.replace(",", " ").split())
+                row.tags = "".join(f" {tag}" for tag in dict.fromkeys(filter(None, named)))
                 row.tags += " " if row.tags else ""
             if note is not None:
                 row.note = note.strip()
@@ -282,7 +283,3 @@ def _conditions(wanted: Search) -> list[ColumnElement[bool]]:
     if wanted.starred:
         found.append(Run.favourite.is_(True))
     return found
-
-
-def _tags(text: str) -> list[str]:
-    return [tag.strip("#") for tag in text.replace(",", " ").split() if tag.strip("#")]

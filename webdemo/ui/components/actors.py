@@ -160,9 +160,7 @@ def result_source(result: Result, title: str) -> Source:
     It is called after the file that the result began with, or else after its title.
     """
     given = result.manifest.get("request", {}).get("actor", {})
-    motion = result.duets[0]
-    people = motion.people if isinstance(motion, Duet) else (motion,)
-    return Source(given.get("name") or title, people)
+    return Source(given.get("name") or title, result.duets[0].people)
 
 
 def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:

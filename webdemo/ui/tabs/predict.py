@@ -220,7 +220,7 @@ class PredictTab(JobTab):
             return found
         given = result.given
         named = result.manifest.get("request", {}).get("motion", {}).get("name") or run.entry.title
-        source = Source(named, given.people if isinstance(given, Duet) else (given,))
+        source = Source(named, given.people)
         return found | {
             past.file: None,
             past.animation: offered_animations(source),
