@@ -385,7 +385,7 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
     comes = goes is not None and goes.way == "to" and act.direction == "up"  # "walks up to"
-    leaves = act.direction in ("away", "back") and not names.isdisjoint(("backs", "walks_away"))  # "backs away"
+    leaves = "backs" in names and act.direction in ("away", "back")  # "backs away"
     if act.direction is not None and act.direction not in words and "way" not in names and not (comes or leaves):
         yield "which way", _goes_way(act, who) if goes else ""
     if abs(act.speed - 1.0) > 0.15:

@@ -30,6 +30,8 @@ _TO_SIDES = tuple(
 """Words behind a part of the body that say that it moves from side to side."""
 _LIES = ("lie", "lying", "lay", "fall", "fell", "land", "roll", "flat")
 """How verbs begin of which "on her back" says how she lies herself."""
+_STROKES = ("pat", "strok", "rub", "scratch", "massag", "caress", "touch", "tickl")
+"""How verbs begin of which "her back" is what the hand is on."""
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
 """Letters and numbers behind "person" or "dancer", and whether they name the first."""
 
@@ -107,7 +109,8 @@ class _Preparation:
             return self._as_one("around", i, 1)  # the adverb, and no noun: "and spin round"
         owned = self._lower(i - 1).endswith("'s") and self._lower(i - 1) not in ("he's", "she's", "it's")
         laid = self._lower(i - 2) == "on" and self._lower(i - 3).startswith(_LIES)
-        turned = self._lower(i - 1) == "her" and (self._lower(i + 1) in closed("behind back") or laid)
+        rubbed = self._lower(i - 2).startswith(_STROKES)
+        turned = self._lower(i - 1) == "her" and (self._lower(i + 1) in closed("behind back") or laid or rubbed)
         if self._lower(i) == "back" and (owned or turned):
             return self._as_one("spine", i, 1)  # the noun, and no adverb
         pointed = self._lower(i) in ("the", "these", "those") and self._lower(i + 1) == "two"

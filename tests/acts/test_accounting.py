@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from acts import read
-from acts.accounting import account, plain, unread_words
+from acts import lexicon, read
+from acts.accounting import account, plain, qualifiers, unread_words
 from acts.checking import checked
 from tests.motion.metrics.test_sentence_shapes import duet, put
 from webdemo.inference.engine import note
@@ -65,6 +65,11 @@ def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str,
 def test_qualifiers_that_nothing_measures_are_named(sentence: str, kinds: tuple[str, ...]) -> None:
     (found,) = checked(read(sentence), duet())
     assert found.unchecked == kinds
+
+
+def test_who_walks_away_backwards_goes_backwards() -> None:
+    (act,) = read("A walks backwards away from B.").acts
+    assert ("which way", "happens(backs(a, 0.2))") in list(qualifiers(act, lexicon().entries[act.act], "a", "", ""))
 
 
 def test_a_way_that_nothing_measures_is_no_hand() -> None:
