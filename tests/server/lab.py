@@ -43,10 +43,12 @@ def stub_module() -> ModuleType:
 
 
 if __name__ == "__main__":
+    from webdemo.server.http import exchange
     from webdemo.server.logs import set_up_logs
     from webdemo.server.serve import make_server
     from webdemo.server.settings import read_settings
 
+    exchange.BACK_OFF = 0.0  # no test waits for a refusal
     pause, partner = (float(os.environ.get(name, "0")) for name in ("STUB_PAUSE", "STUB_PARTNER"))
     engine = stub_module().StubEngine(pause=pause, partner_pause=partner)
     settings = read_settings(port=int(sys.argv[1]), data=sys.argv[2])
