@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from webdemo.server.http import admin_pages
+from webdemo.server.http.error_pages import card
 
 pytestmark = pytest.mark.e2e
 BUTTONS = "<form><button>Suspend</button></form>"
@@ -14,7 +15,7 @@ ROW = ["<strong>a.person.of.a.long.name</strong>", "1,234", "0.9 MB", BUTTONS]
 @pytest.mark.parametrize("width", [390, 1280])
 def test_every_act_is_in_reach(open_page, tmp_path, width: int) -> None:
     people = admin_pages.table([ROW, ROW])
-    page = admin_pages._PAGE.format(home="/", done="", people=people)
+    page = card(f"{admin_pages._STYLE}<h2>People</h2>{people}")
     (tmp_path / "admin.html").write_text(page)
     shown = open_page((tmp_path / "admin.html").as_uri(), width=width)
     for button in shown.get_by_role("button").all():
