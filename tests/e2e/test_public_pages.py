@@ -44,7 +44,7 @@ def test_a_result_is_published_framed_and_ended(server: SimpleNamespace, open_pa
     expect(page.locator("#history-notebook .pdn-card").first).to_contain_text("They bow.")
     page.locator("#history-publish").click()
     expect(page.locator("#sharing-link textarea, #sharing-link input")).to_have_value(
-        re.compile(r"/share/[0-9a-f]{32}$"), timeout=SLOW
+        re.compile(r"/share/[\w-]{24}$"), timeout=SLOW
     )
     address = page.locator("#sharing-link textarea, #sharing-link input").input_value()
     embed = address.replace("/share/", "/embed/")
