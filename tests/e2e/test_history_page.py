@@ -158,7 +158,6 @@ def test_a_notebook_is_searched_written_in_and_taken_along(lab: str, open_page: 
     page.click("#history-files button >> nth=0")
     page.set_input_files("#history-import input[type=file]", sorted(tmp_path.glob("*.npz")))
     page.wait_for_selector("#history-status :text('Imported 2 runs')")
-    page.fill("[data-find=words]", "")
     expect(cards).to_have_count(4, timeout=SLOW)
 
     other = open_page(link)
