@@ -41,10 +41,8 @@ def test_an_act_and_a_run_are_found_by_keyboard_and_an_example_by_one_press(
     expect(page.locator("#status .pd-done")).to_be_visible()
 
     page.keyboard.press("Control+k")
-    until(
-        page,
-        f"[...document.querySelectorAll('{OFFERED}')].some(o => o.label.startsWith('Run: ') && /wrestl/i.test(o.value + o.label))",
-    )
+    offered = f"[...document.querySelectorAll('{OFFERED}')]"
+    until(page, f"{offered}.some(o => o.label.startsWith('Run: ') && /wrestl/i.test(o.value + o.label))")
     page.keyboard.type("run wrestl")
     page.keyboard.press("Enter")
     page.wait_for_url("**/?run=*")
