@@ -1,10 +1,9 @@
-"""The words of a sentence that a verdict leaves out, and the qualifiers of acts that it does not measure.
+"""The words of a sentence that a verdict leaves out.
 
 A word is said by an act that its clause names: as one of its captions' words or a verb of like meaning, as the act's
 thing, part of the body or manner, or as its number, side, direction, speed, length or distance. One that only led to
 the act, as a word of its frames, is read and not said: an act whose captions say none of its clause's verbs is another
-act than the words name. Words of grammar and of the two people count for nothing. A qualifier says how often, on which
-side or how an act is done; where an act goes somewhere, its way, speed and distance bring rules of their own.
+act than the words name. Words of grammar and of the two people count for nothing.
 """
 
 from __future__ import annotations
@@ -15,7 +14,6 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from motion import InputError
-from motion.metrics.sentences.touches import BODY
 
 from .captions import caption_of, naming, with_thing
 from .lexicon import Entry, Lexicon, kind_of, lexicon
@@ -31,9 +29,6 @@ from .shapes import Go
 if TYPE_CHECKING:
     from spacy.tokens import Token
 
-
-from .reading.vocabulary import is_act
-from .shapes import Touch
 
 MOST_WORDS = 12
 """Stretches of words that are reported of one sentence, at most."""
@@ -347,106 +342,3 @@ def _joined(spans: list[tuple[int, int]], text: str) -> Iterator[tuple[int, int]
         last = (start, stop)
     if last is not None:
         yield last
-
-
-# ---- qualifiers of acts that no rule measures ---------------------------------------------------------
-_BOTH = re.compile(r"\bboth (?:\w+ )?(hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE)
-
-_OF_BOTH = "claps palms_strike both_hands_on hands_high hands_ahead hands_on_hips arms_wide arms_crossed arms_down"
-_TWO_HANDED = frozenset((*_OF_BOTH.split(), "holds_in_front"))
-"""Predicates that hold of both hands or arms at once."""
-
-OTHER_THING = "which thing"
-"""The kind of qualifier without which an act is not judged: pointing at a door is not pointing at the other person."""
-
-
-def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterator[tuple[str, str]]:
-    """Qualifiers of an act that no rule of its entry measures: each kind of qualifier, and a rule that does, or "".
-
-    Args:
-        act: told, and of this entry.
-        entry: of the lexicon.
-        who: one of its agents.
-        mask: the predicate by which it is seen; "" where it has none.
-        said: the act's own words in the sentence.
-    """
-    rules = " ".join(entry.rule)
-    names = set(re.findall(r"\w+", rules))
-    caption = shown_caption(act, entry)
-    words = said_words((caption,))
-    goes = next((shape for shape in entry.stage if isinstance(shape, Go)), None)
-    if act.times is not None and act.times > 1 and "n" not in names:
-        yield "how often", ""
-    if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
-        yield "which side", ""
-    if act.part_side and "part" not in names:
-        yield "which side", _on_side(act, entry, who)
-    both = _BOTH.search(said) if act.side == "both" else None
-    if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
-        yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
-    comes = goes is not None and goes.way == "to" and act.direction == "up"  # "walks up to"
-    leaves = "backs" in names and act.direction in ("away", "back")  # "backs away"
-    if act.direction is not None and act.direction not in words and "way" not in names and not (comes or leaves):
-        yield "which way", _goes_way(act, who) if goes else ""
-    if abs(act.speed - 1.0) > 0.15:
-        yield "how fast", _at_speed(act.speed, goes, who) if goes else ""
-    if act.distance is not None:
-        yield (
-            "how far",
-            f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))" * bool(goes),
-        )
-    if act.seconds is not None:
-        yield "how long", ""
-    if FROM_BEHIND in act.manner:
-        yield "from where", f"happens(both({mask}, behind({who})))" if mask else ""
-    told = {FROM_BEHIND, *closed("fillers"), *vocabulary().speeds}
-    if not told.issuperset(act.manner):
-        yield "in which manner", ""
-    if (
-        act.part
-        and "part" not in names
-        and not any(vocabulary().part(act.part) == vocabulary().part(word) != "" for word in words)
-        and "{part}" not in caption
-        and "{limb}" not in caption
-    ):
-        yield "where on the body", ""
-    other = act.thing and "{b}" in caption and not entry.thing and not set(act.thing.split()) & words
-    if other and act.thing not in closed("fillers") and not is_act(act.thing or ""):
-        yield OTHER_THING, ""
-
-
-def plain(act: Act, kinds: frozenset[str]) -> Act:
-    """An act without the qualifiers of these kinds."""
-    left: dict[str, dict[str, object]] = {
-        "how often": {"times": None},
-        "which side": {"side": None, "part_side": None},
-        "with both hands": {"side": None},
-        "on both sides": {"side": None},
-        "which way": {"direction": None, "side": None if act.side == act.direction else act.side},
-        "how fast": {"manner": ()},
-        "in which manner": {"manner": ()},
-        "from where": {"manner": ()},
-    }
-    return act.model_copy(update={name: value for kind in kinds for name, value in left.get(kind, {}).items()})
-
-
-def _on_side(act: Act, entry: Entry, who: str) -> str:
-    """A hand is on that side of the other's body, where it is an act of the hands; else ""."""
-    by_hand = any(isinstance(shape, Touch) and shape.hands != "none" for shape in entry.stage)
-    part = next((name for name in (act.part, vocabulary().part(act.part or "")) if name in BODY), "")
-    return f"happens(hand_on({who}, '{act.part_side} {part}', gap=0.25))" * (by_hand and bool(part))
-
-
-def _goes_way(act: Act, who: str) -> str:
-    ahead = {"forward": f"happens(goes_ahead({who}, 0.3))", "back": f"happens(backs({who}, 0.2))"}
-    if act.direction in ("left", "right"):
-        return f"happens(goes_way({who}, '{act.direction}'))"
-    return ahead.get(act.direction or "", "")
-
-
-def _at_speed(factor: float, goes: Go, who: str) -> str:
-    """Faster, or nowhere as fast, as half way between the usual speed and the one that the words ask for."""
-    between = goes.speed * (1.0 + factor) / 2.0
-    if factor > 1.0:
-        return f"happens(walks({who}, 0.4, {between:.2f}))"
-    return f"never(walks({who}, 0.7, {max(between, 0.6):.2f}))"  # a single stride may be as fast

@@ -21,10 +21,11 @@ from motion.metrics.sentences.joints import Motion, stretches
 from motion.metrics.sentences.language import check, mask_of, masks, measured
 from motion.metrics.sentences.touches import BODY
 
-from .accounting import OTHER_THING, account, plain, qualifiers, shown_caption
+from .accounting import account, shown_caption
 from .captions import with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import Act, Plan
+from .qualifiers import OTHER_THING, plain, qualifiers
 from .reading.vocabulary import vocabulary
 from .shapes import Lift, Posture
 

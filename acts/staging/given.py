@@ -24,7 +24,7 @@ from .gaits import STEPS, low_gait_parts, step_parts
 from .gestures import hand_parts, outer_hand_parts
 from .holds import hold_parts, pull_parts, twirl_parts
 from .lifts import Carrying
-from .limbs import limb_parts, only_by_head
+from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
 from .places import Standing, Way2D
 from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, standing_by, upright
@@ -210,9 +210,6 @@ class _Beat:
                 posed[person] = stands
             elif stays and up and who in score.limbs:
                 parts += limb_parts(person, score, stretch, seed)
-                if only_by_head(score.limbs[who]):
-                    busy = HANDS if who in score.gestures or score.touch is not None else ()
-                    parts += _bystander_parts(person, stretch, seed, all_but((0, *TRUNK, *busy)))[-1:]
                 posed[person] = stands
             elif stays and up and who in score.bows and _only_bows(score, who):
                 parts += softened(bow_parts(person, score, stretch, seed))

@@ -6,6 +6,7 @@ No caption of the training data names them, so the whole body but the arms is gi
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
 from motion.vectors import Array
 
-from .poses import HANDS, JOINT, SOLE, STANDS, TOES, TRUNK, Turns, about, all_but, poses_of, standing_by, turns_of
+from .poses import ALL, HANDS, JOINT, SOLE, STANDS, TOES, TRUNK, Turns, about, all_but, poses_of, standing_by, turns_of
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
 
@@ -293,21 +294,18 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
 WITH_ARMS = frozenset(("reaches down",))
 """Those that the hands belong to."""
 _BY_HEAD = frozenset(("moves head", "rolls head", "nods", "shakes head", "turns head"))
+"""Those that leave the body below the chest to itself."""
 RAISES = frozenset(
     ("raises leg", "raises knee", "swings leg", "kicks", "stamps", "stands on one leg", "crosses legs", "lunges")
 )
 """Those in which a foot leaves the floor."""
 
 
-def only_by_head(limbs: Sequence[Limb]) -> bool:
-    """True for movements that leave the body below the chest to itself."""
-    return _BY_HEAD.issuperset(limb.does for limb in limbs)
-
-
 def limb_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part]:
     """The body of a person who moves single limbs, as far as it falls into a window.
 
-    Their arms are those of recorded people who wait, unless their hands have something else to do.
+    Their arms are those of recorded people who wait, unless their hands have something else to do. Who moves only the
+    head stands as these do: their trunk is held, and their arms and legs are a draft.
     """
     frames = beat.every(OFTEN, SETTLES // 2 if beat.start else 0)
     if not len(frames):
@@ -315,17 +313,25 @@ def limb_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part
     limbs = score.limbs["ab"[person]]
     angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
     poses = limbed(limbs, beat.halt(person), angle, frames / FPS, seconds)
-    with_arms = any(limb.does in WITH_ARMS for limb in limbs)
     waits = standing_by(beat.halt(person), angle, frames + beat.start, 2 * seed + person)
-    if only_by_head(limbs):
-        neck, head = JOINT["neck"], JOINT["head"]
-        turned = heading_matrix(heading(waits) - angle) @ (poses[:, [neck, head]] - poses[:, [0, neck]]).swapaxes(1, 2)
-        leans = swing(turned[..., 0], waits[:, neck] - waits[:, 0])
-        waits[:, head] = waits[:, neck] + np.einsum("nij,nj->ni", leans, turned[..., 1])
-        return [beat.known(person, frames, waits, (0, *TRUNK), kept=True)]
-    if not with_arms:
-        for shoulder, *arm in ARMS:
-            poses[:, arm] = poses[:, [shoulder]] + waits[:, arm] - waits[:, [shoulder]]
-    busy = "ab"[person] in score.gestures or score.touch is not None
-    free = HANDS if busy and not with_arms else ()
-    return [beat.known(person, frames, poses, all_but(free), kept=True)]
+    busy = HANDS if "ab"[person] in score.gestures or score.touch is not None else ()
+    if _BY_HEAD.issuperset(limb.does for limb in limbs):
+        body, held = _with_head(waits, poses, angle), (JOINT["pelvis"], *TRUNK)
+        rest = beat.known(person, frames, body, all_but((*held, *busy)))
+        return [beat.known(person, frames, body, held, kept=True), replace(rest, soft=True, free=True)]
+    if any(limb.does in WITH_ARMS for limb in limbs):
+        return [beat.known(person, frames, poses, ALL, kept=True)]
+    for shoulder, *arm in ARMS:
+        poses[:, arm] = poses[:, [shoulder]] + waits[:, arm] - waits[:, [shoulder]]
+    return [beat.known(person, frames, poses, all_but(busy), kept=True)]
+
+
+def _with_head(body: Array, poses: Array, angle: float) -> Array:
+    """A body (N, 22, 3) that moves its head against its trunk as upright poses (N, 22, 3) of a heading do."""
+    neck, head = JOINT["neck"], JOINT["head"]
+    ways = (poses[:, [neck, head]] - poses[:, [0, neck]]).swapaxes(1, 2)
+    trunk, over = np.moveaxis(heading_matrix(heading(body) - angle) @ ways, -1, 0)
+    found = body.copy()
+    leans = swing(trunk, body[:, neck] - body[:, 0])
+    found[:, head] = body[:, neck] + np.einsum("nij,nj->ni", leans, over)
+    return found

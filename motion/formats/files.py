@@ -183,9 +183,8 @@ _MOST_TEXTS = 1000
 _MOST_MEMBERS = 200
 _MAX_HEADER = 4096
 _PICKLED = (
-    "{} holds pickled Python objects, which could run code and are never opened: where you trust the file, save its "
-    'numbers alone, for MDM\'s results with `d = numpy.load("results.npy", allow_pickle=True).item()` and '
-    '`numpy.save("motion.npy", d["motion"][0].transpose(2, 0, 1))`.'
+    "{} holds pickled Python objects, which could run code and are never opened: save its numbers alone, of MDM's "
+    'results with `numpy.save("motion.npy", results["motion"][0].transpose(2, 0, 1))`.'
 )
 ZIP_ERRORS = (
     zipfile.BadZipFile,

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from acts import lexicon, read
-from acts.accounting import account, plain, qualifiers, unread_words
+from acts.accounting import account, unread_words
 from acts.checking import checked
+from acts.qualifiers import plain, qualifiers
 from tests.motion.metrics.test_sentence_shapes import duet, put
 from webdemo.inference.engine import note
 
