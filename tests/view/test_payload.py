@@ -12,14 +12,8 @@ from hypothesis import strategies as st
 
 from motion import SMPL22, Clip, Duet, InputError
 from motion.metrics import Contact
-from webdemo.view.payload import (
-    Curve,
-    distance_curves,
-    pack_positions,
-    player_payload,
-    sample_payload,
-    unpack_positions,
-)
+from tests.view.packed import unpack_positions
+from webdemo.view.payload import Curve, distance_curves, pack_positions, player_payload, sample_payload
 
 NAMES = SMPL22.joint_names
 

@@ -6,7 +6,6 @@ takes about 105 kB. The browser's side of this format is ``static/player/decode.
 
 from __future__ import annotations
 
-import base64
 import hashlib
 import json
 from collections.abc import Sequence
@@ -55,12 +54,6 @@ def pack_positions(positions: Array) -> dict[str, Any]:
     scale = np.where(extent > 0, extent, 1.0) / _LEVELS
     levels = np.rint((positions - low) / scale).astype("<u2")
     return {"data": in_base64(levels, "<u2"), "min": low.tolist(), "scale": scale.tolist(), "shape": list(levels.shape)}
-
-
-def unpack_positions(packed: dict[str, Any]) -> Array:
-    """The inverse of :func:`pack_positions`: (people, T, J, 3) float32 metres."""
-    levels = np.frombuffer(base64.b64decode(packed["data"]), dtype="<u2").reshape(packed["shape"])
-    return (np.asarray(packed["min"]) + np.asarray(packed["scale"]) * levels).astype(np.float32)
 
 
 def sample_payload(

@@ -10,8 +10,8 @@ import pytest
 from fastapi.testclient import TestClient
 
 from tests.server.clients import lab_of, sign_in
+from tests.view.packed import unpack_positions
 from webdemo.server.http.guard import _LIVE_WEIGHT
-from webdemo.view.payload import unpack_positions
 
 from .test_streams import poses
 

@@ -16,6 +16,7 @@ from motion import SMPL22, InputError
 from motion.things import Thing, shape
 from tests.motion.video.filming import film, packed, stepping
 from tests.server.lab import stub_module
+from tests.view.packed import unpack_positions
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.http.routes import Refused
 from webdemo.server.live import stream as stream_module
@@ -23,7 +24,6 @@ from webdemo.server.live import streams as streams_module
 from webdemo.server.live.stream import MOST_BYTES, MOST_FRAMES, MOST_PICTURES, LiveStream, Resampled, read_message
 from webdemo.server.live.streams import StreamEnded, Streams
 from webdemo.ui.visitor import Visitor
-from webdemo.view.payload import unpack_positions
 
 ADA, EVE = Visitor("ada", "ada"), Visitor("eve", "eve")
 STUB = stub_module()

@@ -17,6 +17,7 @@ import gradio as gr
 from motion.formats import read, write
 from tests.ui.stub_engine import drift, walking
 from tests.ui.tab_events import built, changes, taken
+from tests.view.packed import unpack_positions
 from webdemo.inference.engine import Engine
 from webdemo.inference.methods import methods
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
@@ -24,7 +25,6 @@ from webdemo.ui.api import PredictEndpoint
 from webdemo.ui.components.exports import Record, write_files
 from webdemo.ui.components.prediction_view import error_lines, prediction_payload, still_error
 from webdemo.ui.tabs.predict import PredictTab, predict_choices
-from webdemo.view.payload import unpack_positions
 
 
 @pytest.fixture

@@ -12,7 +12,6 @@ import gradio as gr
 from .part import STATIC, Part, scoped
 
 GALLERY_FOLDER = STATIC / "gallery"
-SCENES = GALLERY_FOLDER / "scenes.json"
 
 _TAKEN = "(scene) => [scene.prompt, scene.seconds, scene.seed]"
 
