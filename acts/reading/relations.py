@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence, Set
 
 from acts.frames import Event
 from acts.lexicon import Lexicon, is_fixture
@@ -13,6 +13,7 @@ BESIDE = frozenset(("gesture", "limb", "words"))
 """Shapes of what a person can do on their way."""
 _ARRIVES = frozenset(("to", "behind", "back", "aside"))
 _LASTS = frozenset(("around", "along", "after", "to and fro"))
+"""Ways that go on for as long as one likes."""
 _KINDS = ("after", "with", "while", "before", "until")
 _FOR_THE_OTHER = {"main-after": "after", "main-until": "until"}
 """Joints that say where the act above stands: "as soon as he waves, she bows"."""
@@ -51,7 +52,7 @@ def related(
         then, kind = kind == "then", "after" if kind == "then" else kind
         act = acts[act.id] = act.model_copy(update={"already": act.already and not then})
         if kind == "who":
-            kind = "while" if _lasts(other, known) else "after"
+            kind = "while" if _goes(other, _LASTS, known) else "after"
         if kind == "after" and (other.already or _waits(other, known)):
             talk = next((r.act for r in found[other.id] if r.kind == "while"), None)
             # What follows "A talks while B waits" follows the talk.
@@ -89,9 +90,8 @@ def _joint(number: int, events: Sequence[Event], of: Mapping[int, str]) -> tuple
     return kind, above if above in of else None
 
 
-def _lasts(act: Act, known: Lexicon) -> bool:
-    """True for a way that goes on for as long as one likes, as around somebody."""
-    return any(isinstance(shape, Go) and shape.way in _LASTS for shape in known.entries[act.act].stage)
+def _goes(act: Act, ways: Set[str], known: Lexicon) -> bool:
+    return any(isinstance(shape, Go) and shape.way in ways for shape in known.entries[act.act].stage)
 
 
 def _waits(act: Act, known: Lexicon) -> bool:
@@ -149,7 +149,7 @@ def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
     answers = known.entries[then.act].answers or then.thing == "it" or same
     if answers and first.agents != then.agents:
         return "after"
-    if first.patient in then.agents and _leaves(then, known):
+    if first.patient in then.agents and _goes(then, {"away"}, known):
         return "after"  # "A slaps B and B runs away"
     if not _people_of(first) & _people_of(then):
         return "with"
@@ -159,10 +159,6 @@ def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
     if first.agents == then.agents and (_accompanies(first, then, known) or _linked(first, then, known)):
         return "with"
     return "after"
-
-
-def _leaves(act: Act, known: Lexicon) -> bool:
-    return any(isinstance(shape, Go) and shape.way == "away" for shape in known.entries[act.act].stage)
 
 
 def _linked(first: Act, then: Act, known: Lexicon) -> bool:

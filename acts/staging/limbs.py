@@ -157,10 +157,6 @@ def _lunged(limb: Limb, held: Array, since: Array) -> Turns:
     }
 
 
-def _turned_out(limb: Limb, held: Array, since: Array) -> Turns:
-    return {f"{side}_hip": heading_matrix(sign * 0.7 * held) for side, sign in (("left", 1.0), ("right", -1.0))}
-
-
 def _reached_down(limb: Limb, held: Array, since: Array) -> Turns:
     down = _pulses(since, held, limb.times or 1, 3.0) ** 0.5
     legs = {"hip": -1.8, "knee": 2.0, "ankle": -0.45, "shoulder": -2.0}
@@ -270,7 +266,9 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "stamps": _stamped_foot,
     "taps foot": _tapped_foot,
     "stands on one leg": lambda limb, held, since: _leg(limb, 0.7 * held, 1.3 * held),
-    "turns legs out": _turned_out,
+    "turns legs out": lambda limb, held, since: {
+        f"{side}_hip": heading_matrix(sign * 0.7 * held) for side, sign in (("left", 1.0), ("right", -1.0))
+    },
     "bends knees": _both_knees,
     "lunges": _lunged,
     "stands tall": lambda limb, held, since: {},
@@ -291,8 +289,6 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "marches": _marching,
 }
 """The movements: rotations (N, 3, 3) of joints, of how far each is held (N,) and of the seconds since it began (N,)."""
-WITH_ARMS = frozenset(("reaches down",))
-"""Those that the hands belong to."""
 _BY_HEAD = frozenset(("moves head", "rolls head", "nods", "shakes head", "turns head"))
 """Those that leave the body below the chest to itself."""
 RAISES = frozenset(
@@ -319,7 +315,7 @@ def limb_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part
         body, held = _with_head(waits, poses, angle), (JOINT["pelvis"], *TRUNK)
         rest = beat.known(person, frames, body, all_but((*held, *busy)))
         return [beat.known(person, frames, body, held, kept=True), replace(rest, soft=True, free=True)]
-    if any(limb.does in WITH_ARMS for limb in limbs):
+    if any(limb.does == "reaches down" for limb in limbs):  # which the hands belong to
         return [beat.known(person, frames, poses, ALL, kept=True)]
     for shoulder, *arm in ARMS:
         poses[:, arm] = poses[:, [shoulder]] + waits[:, arm] - waits[:, [shoulder]]
