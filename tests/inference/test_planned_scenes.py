@@ -223,6 +223,11 @@ def test_a_head_that_is_tilted_stays_so_and_is_not_turned_to_the_other(engine: E
     assert np.abs((head - neck)[45:90, 0]).min() > 0.02
 
 
+@pytest.mark.parametrize(("words", "most"), [("sits on the ground", 0.3), ("lies on the ground", 0.3), ("kneels", 0.7)])
+def test_who_goes_down_is_down_whatever_the_network_makes(reading_engine: Engine, words: str, most: float) -> None:
+    assert made(reading_engine, f"Person A {words}.")[0, 75:-10, 0, 1].max() < most
+
+
 def test_the_arms_of_who_moves_a_leg_or_the_head_differ(engine: Engine) -> None:
     for words in ("Person A raises the left leg.", "Person A shakes the head."):
         assert mirror_gap(made(engine, words)[0].astype(np.float64)[20:-20]) > 1.5
