@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from motion import InputError
 
-from .captions import caption_of, naming, with_thing
+from .captions import naming, with_thing
 from .lexicon import Entry, Lexicon, kind_of, lexicon
 from .plan import FROM_BEHIND, Act, Plan
 from .reading import wordnet
@@ -155,7 +155,7 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
 
 def shown_caption(act: Act, entry: Entry) -> str:
     """The caption in whose words the verdict on an act is given: one with the act's own verb where there is one."""
-    usual, own = naming(act, entry, caption_of(act, entry)), f"[{act.act.split('-')[0]}]"
+    usual, own = naming(act, entry), f"[{act.act.split('-')[0]}]"
     alike = (text for text in entry.caption if own in text and _slots(text) == _slots(usual))
     return usual if own in usual else next(alike, usual)
 

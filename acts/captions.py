@@ -116,8 +116,9 @@ def with_thing(act: Act, caption: str) -> tuple[Act, str]:
     return (act.model_copy(update={"thing": named}) if act.thing else act), caption
 
 
-def naming(act: Act, entry: Entry, other: str) -> str:
-    """The caption of an entry that has a place for the act's thing or speaks of two at once; else another caption."""
+def naming(act: Act, entry: Entry) -> str:
+    """The caption of an act that has a place for its thing or speaks of two at once; else its usual one."""
+    other = caption_of(act, entry)
     both = len(act.agents) == 2 and "{b}" in other
     fits = (text for text in entry.caption if (act.thing and "{thing}" in text) or (both and "{a+b}" in text))
     return next(fits, other)

@@ -25,8 +25,8 @@ _PLAIN = _SOMEBODY | {"man", "woman", "guy", "boy", "girl", "human", "kid", "chi
 def names_one(doc: Doc) -> bool:
     """True for a parsed text that names a single person, whose every part of a body and pronoun are."""
     words_of = vocabulary()
-    nouns = [t for t in doc if t.lower_ in _SOMEBODY or words_of.is_usual_person(t.lemma_.lower())]
-    nouns = [t for t in nouns if t.pos_ not in ("VERB", "ADV", "ADJ") and t.dep_ != "amod"]
+    nouns = [t for t in doc if t.pos_ not in ("VERB", "ADV", "ADJ") and t.dep_ != "amod"]
+    nouns = [t for t in nouns if t.lower_ in _SOMEBODY or words_of.is_usual_person(t.lemma_.lower())]
     words = {t.lower_ for t in doc if not (_is_of_thing(t) or (t.lower_ == "second" and t.dep_ == "pobj"))}
     if not nouns:
         told = next((t for t in doc if t.pos_ in ("VERB", "NOUN")), None)  # "walks forward and sits"

@@ -196,12 +196,10 @@ class _Preparation:
         if sided and (begun or self._lower(i - 1) not in within):
             return [("the", start, start)]  # "drags left leg", where nobody leaves
         bare = i not in self._letters and word.islower() and not word.endswith("s") and word not in ("one", "person")
-        if not bare or not self._is_bare_person(i) or self._lower(i + 1) == "'":
+        if not bare or not _begins(self._lower(i - 1)) or not self._is_bare_person(i) or self._lower(i + 1) == "'":
             return []
         before_it, before = (self._lower(k) in closed("determiners") for k in (i - 2, i - 1))
-        if before_it and not before:  # "an unconscious man"
-            return []
-        return [("the", start, start)] if _begins(self._lower(i - 1)) else []
+        return [] if before_it and not before else [("the", start, start)]  # not in "an unconscious man"
 
     def _is_bare_person(self, i: int) -> bool:
         """True for a usual noun of a person, and for a rarer one before its verb or behind a preposition."""

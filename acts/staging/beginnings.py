@@ -14,7 +14,7 @@ from acts import shapes
 from acts.lexicon import Lexicon
 from acts.plan import Act, other_of
 from motion import FPS, SMPL22
-from motion.placement import Placement
+from motion.transforms import Placement
 from motion.vectors import Array
 
 from .floor import ABREAST, BEHIND, CLOSE, LINKED

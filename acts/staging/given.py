@@ -13,8 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from motion import FPS
-from motion.placement import Placement
-from motion.transforms import heading
+from motion.transforms import Placement, heading
 from motion.vectors import Array
 
 from .beginnings import Room, Take, beginning, going, roomy, starting

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.placement import Placement
+from motion.transforms import Placement
 from motion.vectors import Array
 
 from .places import HALT, Course, Standing, Way2D

@@ -52,10 +52,13 @@ def furnish(duet: Duet, plans: Sequence[PlanFrames], lengths: Sequence[float] = 
         uses += uses_of(plan, start, end, split)
         grips += grips_of_plan(plan, hands, duet, start, end, split)
     rows: list[tuple[Thing, list[Row]]] = []
-    moved = courses(hands, uses)
+    moved = courses(hands, uses) if uses else []
     for course in moved:
         rows += [(course.thing(), course.events), *((table, []) for table in course.tables)]
     grips = [grip for grip in (*grips, *grips_of_things(moved, duet.num_frames)) if grip.start < duet.num_frames]
+    duet = replace(duet, grips=tuple(grips[-MOST_GRIPS:]))
+    if not uses:
+        return duet
     for use, people, thing in furniture(hands, uses):
         if not any(_is_same(thing, other) for other, _ in rows):
             event = {"act": use.id, "does": use.does, "by": "".join("ab"[who] for who in people)}
@@ -63,7 +66,6 @@ def furnish(duet: Duet, plans: Sequence[PlanFrames], lengths: Sequence[float] = 
     for fixture in fixtures(hands, uses):
         body, *leaves = fixture.things(hands.frames, hands.fps)
         rows += [(body, fixture.events), *((leaf, []) for leaf in leaves)]
-    duet = replace(duet, grips=tuple(grips[-MOST_GRIPS:]))
     if not rows:
         return duet
     rows = rows[:MOST_THINGS]

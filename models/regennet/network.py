@@ -22,8 +22,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.diffusion import classifier_free, denoise, make_scheduler
-from models.diffusion.schedule import Scheduler
+from models.diffusion import Scheduler, classifier_free, denoise, make_scheduler
 from models.errors import Released
 from models.layers import TimestepEmbedding, sinusoids
 from motion.errors import InputError

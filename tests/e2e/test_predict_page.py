@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 
 from motion.formats import write
 from tests.ui.stub_engine import walking
-from webdemo.ui.components.show import ROUNDS
+from webdemo.ui.components.player import ROUNDS
 from webdemo.ui.text.examples import example_clips
 
 from .playing import choose, give_file, unfold

@@ -13,8 +13,7 @@ import torch
 from models.agent.recogniser import Recogniser, RecogniserConfig
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.weights_io import save_network
-from motion.placement import MEDIAN_START_DISTANCE
-from motion.transforms import facing
+from motion.transforms import MEDIAN_START_DISTANCE, facing
 from webdemo.inference import ReactRequest, Result
 from webdemo.inference.engine import Engine
 from webdemo.inference.pipelines.agent import AgentPipeline, Look

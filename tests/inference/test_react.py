@@ -7,8 +7,7 @@ import pytest
 import torch
 
 from motion import SKELETONS, Clip, Duet, InputError
-from motion.placement import leading_wrist
-from motion.transforms import mirrored
+from motion.transforms import leading_wrist, mirrored
 from webdemo.inference import ReactRequest, Result
 from webdemo.inference.engine import Engine
 from webdemo.inference.requests.actor import choose_actor

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.placement import leading_wrist, names_side
+from motion.transforms import leading_wrist, names_side
 
 
 def leading_hand(positions: NDArray[np.floating], events: Mapping[str, Any] | None) -> str | None:

@@ -14,8 +14,8 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.signal import find_peaks
 
 from motion.kinematics import forward_kinematics
-from motion.placement import leading_wrist
 from motion.skeleton import LEGS, SMPL22
+from motion.transforms import leading_wrist
 from motion.vectors import wrapped
 
 from .compose import OTHER, Motion, join, mirror, motion_from_positions, time_warp

@@ -6,6 +6,7 @@ Those that ship are in :mod:`.built_in`; models of a lab's own enter by a table 
 
 from __future__ import annotations
 
+import json
 import logging
 import os
 import threading
@@ -135,3 +136,22 @@ def _register_all() -> None:
         for found in BUILT_IN:
             register(found)
         register_settings()
+
+
+def takes_class(name: str) -> bool:
+    """True if a method takes the name of a class instead of a sentence."""
+    return "class" in method(name).takes
+
+
+def by_class() -> Method:
+    """The method that makes two people from a class."""
+    return next(found for found in methods("generate") if "class" in found.takes)
+
+
+def installed_classes(weights: Path = WEIGHTS) -> list[str]:
+    """Names of the classes; none where there are no weights."""
+    try:
+        meta = json.loads((weights / str(by_class().weights) / "config.json").read_text())
+        return list(map(str, meta["model"]["labels"]))
+    except (OSError, ValueError, KeyError, TypeError):
+        return []

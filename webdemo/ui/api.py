@@ -16,7 +16,7 @@ import acts
 from motion import Duet, InputError
 from motion.formats import ImportChoices, read
 from motion.retarget import to_smpl
-from webdemo.inference.methods import AUTOMATIC, methods
+from webdemo.inference.methods import AUTOMATIC, by_class, methods
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
@@ -27,7 +27,6 @@ from webdemo.inference.story.request import MOST_SECONDS
 from webdemo.ui.components import film as films
 from webdemo.ui.components.exports import file_name, without_place, write_files
 from webdemo.ui.components.reading import READERS, READING_EVENTS
-from webdemo.ui.text.classes import class_method
 from webdemo.ui.text.words import error_line, progress_line
 from webdemo.view import film, plotly_figure
 from webdemo.view.camera import VIEWS
@@ -198,14 +197,14 @@ class ClassEndpoint(GenerateEndpoint):
         return {
             "name": gr.Textbox(label="name of a class, such as: shake hands"),
             "seconds": gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
-            **self._sampling(class_method().default("guidance", GenerateRequest.guidance)),
+            **self._sampling(by_class().default("guidance", GenerateRequest.guidance)),
         }
 
     def generate_class(
         self, name: str, steps: int = OWN_STEPS, progress: gr.Progress = PROGRESS, **asked: Any
     ) -> Answer:
         """Two people from the name of a class, by BiGraphDiff; an unknown one is answered with all names."""
-        return self.generate(name, steps, progress, model=class_method().name, **asked)
+        return self.generate(name, steps, progress, model=by_class().name, **asked)
 
 
 class ReactEndpoint(Endpoint):

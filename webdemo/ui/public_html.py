@@ -15,9 +15,8 @@ from jinja2 import Environment, FileSystemLoader
 
 from webdemo.inference.methods import label_of
 from webdemo.inference.requests.predict import PredictResult
-from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
+from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS, result_payload
 from webdemo.ui.components.prediction_view import prediction_payload
-from webdemo.ui.components.show import result_payload
 from webdemo.ui.history import Entry, Opened
 from webdemo.ui.text.texts import TEXTS, TEXTS_JS, say
 from webdemo.ui.theme import COLOURS

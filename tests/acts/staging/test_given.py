@@ -10,7 +10,7 @@ from acts.staging.given import Story, plan_parts
 from acts.staging.stage import scores_of
 from acts.staging.window import KnownFrames, Window
 from motion import FPS
-from motion.placement import Placement
+from motion.transforms import Placement
 
 SECONDS = 5.0
 FRAMES = round(SECONDS * FPS)

@@ -4,7 +4,7 @@ import pytest
 import torch
 from torch import Tensor
 
-from models.diffusion.sampling import DRAFTED
+from models.diffusion import DRAFTED
 from models.intergen.compact import CompactConfig, CompactInterGen
 from models.known import KNOWN_FEATURES
 from models.motion_tokens import FEATURES

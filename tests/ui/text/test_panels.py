@@ -12,7 +12,7 @@ from motion.metrics import MEASURES
 from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Progress, Result
-from webdemo.ui.components.show import result_payload
+from webdemo.ui.components.player import result_payload
 from webdemo.ui.text.panels import effect_line, model_state, notes_lines, readout_panel, status
 from webdemo.ui.text.words import cancelled_line, progress_line, text
 

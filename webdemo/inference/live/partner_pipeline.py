@@ -19,10 +19,9 @@ from models.diffusion import sample_noise
 from models.motion_tokens import FEATURES
 from models.regennet.compact import CompactStream
 from motion import FPS, SMPL22, Clip
-from motion.placement import Placement
 from motion.steering import Goal, Steering
 from motion.things import Thing
-from motion.transforms import turn
+from motion.transforms import Placement, turn
 from motion.vectors import FLAT, Array
 from motion.video.following import Gaze
 from webdemo.inference.finish.cleanup import FollowingCleanup

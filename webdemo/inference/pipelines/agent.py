@@ -24,7 +24,7 @@ from models.agent.recogniser import OBSERVED, PREDICTED, Recogniser, sampled
 from models.known import Hold, Known
 from models.weights_io import load_network
 from motion import FPS, SMPL22, Clip, Duet
-from motion.placement import MEDIAN_START_DISTANCE, Placement
+from motion.transforms import MEDIAN_START_DISTANCE, Placement
 from motion.vectors import Array
 from webdemo.inference.finish.joining import joined
 from webdemo.inference.requests import ReactRequest

@@ -11,8 +11,15 @@ from torch import Tensor
 
 from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.bigraphdiff.released import JOINTS, load_released
-from models.diffusion import TRAIN_TIMESTEPS, cosine_betas, make_scheduler, sample_noise, sample_steps
-from models.diffusion.schedule import SamplerName, Scheduler
+from models.diffusion import (
+    TRAIN_TIMESTEPS,
+    SamplerName,
+    Scheduler,
+    cosine_betas,
+    make_scheduler,
+    sample_noise,
+    sample_steps,
+)
 from models.intergen.released import read_normaliser
 from models.text.clip import find_vocabulary
 from models.weights_io import load_network

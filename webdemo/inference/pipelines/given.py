@@ -17,9 +17,9 @@ from models.motion_tokens import DuetSpace
 from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.kinematics import project_to_skeleton
 from motion.metrics import compare
-from motion.placement import Placement
 from motion.representation import NUM_FEATURES
 from motion.smoothing import minimum_jerk, smoothstep
+from motion.transforms import Placement
 from motion.vectors import Array
 from webdemo.inference.finish.joining import PASSING, joined, passing
 from webdemo.inference.requests import ReactRequest

@@ -23,8 +23,7 @@ from models.released import read_tensors, without_wrapper
 from models.weights_io import load_network
 from motion import FPS, SMPL22, Clip
 from motion.ik import fit_skeleton
-from motion.placement import Placement
-from motion.transforms import heading_matrix, resample
+from motion.transforms import Placement, heading_matrix, resample
 from motion.vectors import Array
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.own.entries import Entry

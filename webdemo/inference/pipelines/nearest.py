@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 from models.weights_io import WeightsFolder
 from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.formats import read
-from motion.placement import Placement
-from motion.transforms import resample
+from motion.transforms import Placement, resample
 from motion.vectors import Array
 from webdemo.inference.built_in import REACTIONS_VARIABLE
 from webdemo.inference.finish.cleanup import clean_person

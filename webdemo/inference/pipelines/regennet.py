@@ -25,7 +25,7 @@ from models.regennet.released import ROWS, decode, encode, load_released
 from models.text import MiniLM
 from models.weights_io import load_network
 from motion import FPS, Clip, InputError
-from motion.placement import Placement
+from motion.transforms import Placement
 from motion.vectors import Array
 from webdemo.inference.finish.cleanup import FollowingCleanup, clean_person
 from webdemo.inference.finish.damping import Beside, Damping

@@ -23,8 +23,7 @@ from acts.staging.window import KnownFrames, Part, Window
 from models.intergen.compact import CompactInterGen
 from motion import FPS, Duet, InputError
 from motion.metrics import compare
-from motion.placement import MEDIAN_START_DISTANCE, Placement
-from motion.transforms import heading, heading_matrix
+from motion.transforms import MEDIAN_START_DISTANCE, Placement, heading, heading_matrix
 from motion.vectors import Array
 from webdemo.inference.finish.cleanup import finished, finishes
 from webdemo.inference.finish.joining import closed

@@ -14,15 +14,14 @@ from torch import Tensor
 from acts.staging.window import KnownFrames
 from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.compiled import compile_network
-from models.diffusion import SamplerName, make_scheduler, sample_noise, sample_steps
-from models.diffusion.schedule import Spacing
+from models.diffusion import SamplerName, Spacing, make_scheduler, sample_noise, sample_steps
 from models.intergen.compact import CompactInterGen, Touch
 from models.intergen.released import ReleasedInterGen
 from models.motion_tokens import DuetSpace
 from models.weights_io import WeightsFolder
 from motion import FPS, Duet, InputError
 from motion.metrics import compare
-from motion.placement import Placement
+from motion.transforms import Placement
 from motion.vectors import Array
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.finish.damping import Damping

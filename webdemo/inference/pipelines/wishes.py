@@ -10,7 +10,7 @@ import numpy as np
 
 from acts.staging.window import KnownFrames, Part, Window, known_paths
 from motion import FPS, InputError
-from motion.placement import MEDIAN_START_DISTANCE, Placement
+from motion.transforms import MEDIAN_START_DISTANCE, Placement
 from motion.vectors import Array
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.paths import MOST_SPEED, FloorPath

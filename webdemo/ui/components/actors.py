@@ -19,7 +19,7 @@ from webdemo.ui.places import READING
 from webdemo.view.payload import Payload, player_payload
 
 from .fields import animation_labels, animation_list
-from .show import GIVEN
+from .player import GIVEN
 
 AUTO = "auto"
 ReadWith = tuple[str, float | None, str, int | None]

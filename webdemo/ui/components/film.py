@@ -20,8 +20,8 @@ from webdemo.view.stage import LOOKS, Pane, Style
 from webdemo.view.theme import THEMES
 
 from .exports import Record, file_name
+from .player import with_shown_roles
 from .prediction_view import ghost_of, without_name
-from .show import with_shown_roles
 
 LONGEST = 60.0
 """Seconds of motion that the page films; the shell has no such limit."""

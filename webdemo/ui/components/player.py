@@ -1,4 +1,4 @@
-"""The player of two-person motion as a Gradio component.
+"""The player of two-person motion as a Gradio component, and what it is given of a result.
 
 ``gr.Plot`` drops plotly's frames, so the player is a ``gr.HTML`` with modules of its own
 (``static/player``). Its templates are constant files: what a user typed never becomes part of a
@@ -7,13 +7,21 @@ template, it travels as data and the browser sets it as text.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
 from typing import Any, ClassVar
 
 import gradio as gr
 
+from motion import Clip, Duet
+from motion.formats import read
+from motion.metrics import Contact
+from webdemo.inference.run import Result
 from webdemo.ui.text.texts import TEXTS, TEXTS_JS
 from webdemo.ui.theme import COLOURS
-from webdemo.view.payload import Payload
+from webdemo.view.payload import Payload, build_payload, sample_payload
 
 from .part import STATIC, Part
 
@@ -21,6 +29,10 @@ PLAYER_FOLDER = STATIC / "player"
 BODIES_FOLDER = PLAYER_FOLDER.parent / "bodies"
 PLOTLY_JS = STATIC / "plotly" / "plotly-gl3d.min.js"
 """plotly.js with its 3D charts alone: a third of what the whole of it weighs."""
+ROUNDS = 3
+"""Rounds that an example plays before it rests, so that a page left open costs nothing."""
+GIVEN, MADE = "given", "generated"
+"""Labels of the two people of a reaction, beside their letters."""
 
 # Only these become reachable over the network: the player's files, its bodies, plotly.js, the colours and the texts.
 gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS, COLOURS, TEXTS_JS, TEXTS])
@@ -55,3 +67,50 @@ def busy(text: str = "", *, progress: float | None = None) -> dict[str, Any]:
 def show(payload: Payload | None) -> dict[str, Any]:
     """An update that shows a payload and takes the message away."""
     return gr.update(value=payload, busy="", progress=None)
+
+
+def shown_roles(manifest: Mapping[str, Any]) -> tuple[str, str]:
+    """Labels beside "A" and "B" for a result of this manifest: of a reaction who was given; "a" and "b" add nothing."""
+    asked = manifest.get("request", {})
+    if asked.get("kind") != "react":
+        return "a", "b"
+    return (GIVEN, MADE) if asked.get("role", "a") == "a" else (MADE, GIVEN)
+
+
+def with_shown_roles(motion: Duet | Clip, manifest: Mapping[str, Any]) -> Duet | Clip:
+    """A motion of a result with the roles of :func:`shown_roles`; one person as they are."""
+    return replace(motion, roles=shown_roles(manifest)) if isinstance(motion, Duet) else motion
+
+
+def result_payload(result: Result, *, title: str = "") -> Payload:
+    """The player's value for a result: every sample with the contacts of its read-outs."""
+    samples = [
+        sample_payload(
+            with_shown_roles(duet, result.manifest), label=str(i + 1), contacts=_contacts(result.readouts[i : i + 1])
+        )
+        for i, duet in enumerate(result.duets)
+    ]
+    return build_payload(samples, skeleton=result.duets[0].skeleton, title=title)
+
+
+def _contacts(readouts: tuple[Mapping[str, Any], ...]) -> list[Contact] | None:
+    """Those of a sample's read-outs, if it has any."""
+    found = readouts[0].get("contacts") if readouts else None
+    return None if found is None else [Contact(**contact) for contact in found]
+
+
+@lru_cache(maxsize=1)
+def arrival_payload(path: Path) -> Payload | None:
+    """A motion file that a page shows before anything is asked of it, played ``ROUNDS`` times, then at rest.
+
+    No touches are marked on its time line, and its title is the sentence that it was made from. None where the file is
+    missing.
+    """
+    if not path.is_file():
+        return None
+    duet = read(path)
+    if not isinstance(duet, Duet):
+        return None
+    title = (duet.manifest or {}).get("request", {}).get("prompt", "")
+    shown = sample_payload(with_shown_roles(duet, duet.manifest or {}), label="1", contacts=())
+    return {**build_payload([shown], skeleton=duet.skeleton, title=title), "rounds": ROUNDS}

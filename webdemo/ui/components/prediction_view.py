@@ -12,7 +12,7 @@ from motion.vectors import Array
 from webdemo.inference.requests.predict import PredictResult, with_people
 from webdemo.view.payload import Curve, Payload, build_payload, sample_payload
 
-from .show import with_shown_roles
+from .player import with_shown_roles
 
 _NO_TRUTH = "The recording ends here, so there is nothing to compare with."
 

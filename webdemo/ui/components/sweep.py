@@ -16,8 +16,8 @@ from webdemo.ui.text.panels import sides, table
 from webdemo.ui.text.words import number, text
 from webdemo.view.payload import Payload, build_payload, grid_sample
 
+from .player import result_payload
 from .prediction_view import prediction_payload
-from .show import result_payload
 
 MOST = 9
 """Cells of a grid."""

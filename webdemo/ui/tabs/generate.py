@@ -10,20 +10,19 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.inference.method import SECONDS
-from webdemo.inference.methods import installed, label_of, method
+from webdemo.inference.methods import installed, installed_classes, label_of, method, takes_class
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.paths import path_of
 from webdemo.inference.run import Result
 from webdemo.inference.story.beats import plans_of_result
 from webdemo.ui.components.fields import chip, looked_up, prompt_field, slider
 from webdemo.ui.components.gallery import Gallery
+from webdemo.ui.components.player import arrival_payload
 from webdemo.ui.components.reading import Reading, checked, drawn_paths, edited_plan, shown
-from webdemo.ui.components.show import arrival_payload
 from webdemo.ui.components.story import path_value
 from webdemo.ui.components.sweep import Kind
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
-from webdemo.ui.text.classes import installed_classes, takes_class
 from webdemo.ui.text.examples import ARRIVAL, CLIPS, EXAMPLES
 from webdemo.ui.text.texts import say
 

@@ -20,8 +20,7 @@ from motion import InputError
 from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.ui.components.exports import Record
-from webdemo.ui.components.player import busy, show
-from webdemo.ui.components.show import result_payload
+from webdemo.ui.components.player import busy, result_payload, show
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened
 from webdemo.ui.text.panels import effect_line, made_line, notes_lines, readout_panel, status

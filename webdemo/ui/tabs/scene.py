@@ -15,10 +15,9 @@ from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.fields import chip, prompt_field
 from webdemo.ui.components.film import READ_PLAYER
-from webdemo.ui.components.player import show
+from webdemo.ui.components.player import show, with_shown_roles
 from webdemo.ui.components.reading import Reading, checked
 from webdemo.ui.components.scene_parts import FUTURES, only_sample, part_request, place_of, shown_duet, went_on
-from webdemo.ui.components.show import with_shown_roles
 from webdemo.ui.components.story import StoryLine, story_fields, value_of
 from webdemo.ui.components.story_words import edited, lay_out, said_of, settled, story_text, written
 from webdemo.ui.context import PageContext

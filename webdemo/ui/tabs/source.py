@@ -14,8 +14,7 @@ from webdemo.ui.components.actors import Source, offered_animations, read_source
 from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.fields import animation_field, chip, file_field
-from webdemo.ui.components.player import busy, show
-from webdemo.ui.components.show import ROUNDS
+from webdemo.ui.components.player import ROUNDS, busy, show
 from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
