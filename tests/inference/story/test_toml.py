@@ -51,6 +51,8 @@ def test_a_story_is_read_and_written() -> None:
         ("sede = 3\n", "Line 1: there is no key 'sede' in a story; did you mean 'seed'"),
         ("seed = 1.5\n", "Line 1: seed must be a whole number"),
         ('[[path]]\nperson = "a"\npoints = [[0, 1], [1]]\n', "Line 3: Point 2 of a path"),
+        ('[[path]]\nperson = "a"\npoints = [[0, 1], 0.5]\n', "Line 3: Point 2 of a path"),
+        ('[[path]]\nperson = "a"\npoints = [[0, 1, 2, 3, 4]]\n', "Line 3: Point 1 of a path"),
         ('[[pose]]\nperson = "a"\nfile = "x.npz"\n', "Line 3: a file is only read from the shell"),
     ],
 )

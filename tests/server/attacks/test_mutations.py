@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import multiprocessing
 import os
@@ -88,18 +89,23 @@ points = [[0.0, 0.0, 0.0], [3.0, 1.0, 2.0]]
 """
 
 
+def chosen(dice: random.Random) -> Any:
+    """One of the values, which the next change may change: a list that held itself would be no JSON."""
+    return copy.deepcopy(dice.choice(VALUES))
+
+
 def mutated_json(dice: random.Random) -> bytes:
     """The body of a call with some of it replaced, added, left out or repeated."""
     body: dict[str, Any] = {"data": list(FIELDS), "session_hash": "mutant", "fn_index": dice.randrange(4)}
     for _ in range(dice.randint(1, 3)):
         where = dice.choice(["data", "item", "key", "new"])
         if where == "data":
-            body["data"] = dice.choice(VALUES)
+            body["data"] = chosen(dice)
         elif where == "item" and isinstance(body["data"], list) and body["data"]:
-            body["data"][dice.randrange(len(body["data"]))] = dice.choice(VALUES)
+            body["data"][dice.randrange(len(body["data"]))] = chosen(dice)
         else:
             keys = ["session_hash", "fn_index", "event_id", "event_data", "trigger_id", "batched", "request"]
-            body[dice.choice(keys)] = dice.choice(VALUES)
+            body[dice.choice(keys)] = chosen(dice)
     return mutated(json.dumps(body).encode(), dice) if dice.random() < 0.3 else json.dumps(body).encode()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,8 +18,9 @@ from gradio.routes import App
 from starlette.routing import Mount
 
 from tests.server.attacks.target import Target
-from tests.server.clients import FIELDS, settings_for
+from tests.server.clients import CALL, FIELDS, settings_for
 from tests.server.lab import ROOT, stub_module
+from tests.server.queue.test_queue import wait_for
 from tests.ui.stub_page import stub_context
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.accounts.visitors import Bindings
@@ -178,7 +180,7 @@ def test_nothing_that_computes_goes_past_the_queue() -> None:
 
 @pytest.fixture(scope="module")
 def target(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    with Target(tmp_path_factory.mktemp("events"), accounts=True) as target:
+    with Target(tmp_path_factory.mktemp("events"), accounts=True, stub_pause=0.1) as target:
         yield target
 
 
@@ -210,3 +212,16 @@ def test_no_event_is_called_past_the_queue(target: Target) -> None:
     for path, body in (("render", {"data": sheet(target, "eve")}), ("predict", {"fn_index": 4, "data": []})):
         answer = target.ask("eve", "POST", f"/gradio_api/run/{path}", json=body)
         assert answer.status_code in (400, 404), path
+
+
+def test_several_streams_of_a_call_that_are_cut_off_leave_nothing(target: Target) -> None:
+    """All but one ended in an error, and what Gradio keeps of each stayed until the server was stopped."""
+    data, ends = [*FIELDS[:5], 40, *FIELDS[6:]], '"route": "/gradio_api/call/{api_name}/{event_id}"'
+    call = target.ask("ada", "POST", f"{CALL}/generate", json={"data": data}).json()["event_id"]
+    before = target.log().count(ends)
+    with ExitStack() as cut:
+        for _ in range(5):
+            stream = target.client("ada").stream("GET", f"{CALL}/generate/{call}")
+            assert cut.enter_context(stream).status_code == 200
+    wait_for(lambda: target.log().count(ends) == before + 5)
+    assert "A request failed." not in target.log()

@@ -175,10 +175,12 @@ def path_of(values: Mapping[str, Any]) -> FloorPath:
 
 def _point_of(values: Any, number: int) -> FloorPoint:
     names = ("x", "z") if isinstance(values, Sequence) and len(values) == 2 else ("seconds", "x", "z", "heading")
-    known = values if isinstance(values, Mapping) else dict(zip(names, values, strict=False))
+    known: Mapping[str, Any] = values if isinstance(values, Mapping) else {}
+    if isinstance(values, Sequence) and len(values) <= len(names):
+        known = dict(zip(names, values, strict=False))
     given = [value for value in known.values() if value is not None]
     numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in given)
-    if not numbers or len(known) < len(values) or not {"x", "z"} <= known.keys() <= {*names, "seconds", "heading"}:
+    if not numbers or not {"x", "z"} <= known.keys() <= {*names, "seconds", "heading"}:
         raise InputError(
             f"Point {number} of a path must be [x, z], [seconds, x, z] or [seconds, x, z, heading], all numbers."
         )

@@ -4,30 +4,68 @@ the server's state of each open page and API client small."""
 from __future__ import annotations
 
 import asyncio
-import gzip
 import re
+import struct
+import zlib
 from collections import deque
-from functools import lru_cache
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from gradio.blocks import Blocks
 from gradio.routes import App
 from gradio.state_holder import SessionState, StateHolder
-from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-KEPT = 16
-"""Most packed answers that are kept: they differ by path, scheme and host name."""
 PATHS = ("/", "/config")
 _ANY = b"any-host.invalid"
 """Stands for the name by which a visitor calls this server; the guard lets no name in that is more than a name."""
 _LEVEL = 5
 """Of packing: a third of the time of the highest, which saves two per cent."""
+_PIECE = 2**16
+"""Bytes that are sent in one go, so that little more than that waits to be read by a visitor who reads slowly."""
+_GZIP_HEAD, _GZIP_END = bytes.fromhex("1f8b08000000000000ff"), bytes.fromhex("010000ffff")
+"""Ten bytes before the blocks of a gzip file (RFC 1952), and a last block that is empty (RFC 1951)."""
 
 
-@lru_cache(KEPT)
-def _packed(body: bytes) -> bytes:
-    return gzip.compress(body, _LEVEL)
+class Page:
+    """An answer that is packed once, however many names visitors call the server by.
+
+    Args:
+        status: of HTTP.
+        headers: without its length.
+        body: with :data:`_ANY` in place of the name.
+    """
+
+    def __init__(self, status: int, headers: list[tuple[bytes, bytes]], body: bytes) -> None:
+        self.status, self.headers, self.parts = status, headers, body.split(_ANY)
+        packer = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
+        # After a full flush a name may follow, since nothing behind it refers to what is before.
+        self.packed = [packer.compress(part) + packer.flush(zlib.Z_FULL_FLUSH) for part in self.parts]
+
+    def plain(self, host: bytes) -> list[bytes]:
+        """The body for a name, in pieces."""
+        return [piece for part in self.parts for piece in (part, host)][:-1]
+
+    def gzip(self, host: bytes) -> list[bytes]:
+        """The packed body for a name, in pieces: the name is a block that is stored as it is."""
+        check = size = 0
+        for piece in self.plain(host):
+            check, size = zlib.crc32(piece, check), size + len(piece)
+        stored = struct.pack("<BHH", 0, len(host), len(host) ^ 0xFFFF) + host
+        blocks = [piece for packed in self.packed for piece in (packed, stored)][:-1]
+        return [_GZIP_HEAD, *blocks, _GZIP_END + struct.pack("<II", check, size)]
+
+
+def _regular(pieces: Iterable[bytes]) -> Iterator[bytes]:
+    """The same bytes, of which each piece but the last has :data:`_PIECE` or nearly twice as many."""
+    held = b""
+    for piece in pieces:
+        for start in range(0, len(piece), _PIECE):
+            held += piece[start : start + _PIECE]
+            if len(held) >= _PIECE:
+                yield held
+                held = b""
+    yield held
 
 
 class PageCache:
@@ -43,7 +81,7 @@ class PageCache:
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
-        self._made: dict[tuple[str, str], Response] = {}
+        self._made: dict[tuple[str, str], Page] = {}
         self._making = asyncio.Lock()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -54,19 +92,20 @@ class PageCache:
         sent, key = dict(scope["headers"]), (scope["path"], scope["scheme"])
         async with self._making:  # whoever comes meanwhile waits for what is being made
             made = self._made.get(key) or await self._make(scope, receive)
-            if made.status_code == 200:
+            if made.status == 200:
                 self._made[key] = made
-        answer, host = Response(status_code=made.status_code), sent.get(b"host", b"")
-        answer.raw_headers = [pair for pair in made.raw_headers if pair[0] != b"content-length"]
-        answer.headers["vary"] = "Accept-Encoding"
-        answer.body = bytes(made.body).replace(_ANY, host)
+        host, headers = sent.get(b"host", b""), [*made.headers, (b"vary", b"Accept-Encoding")]
         if b"gzip" in sent.get(b"accept-encoding", b""):
-            answer.body = _packed(answer.body)
-            answer.headers["content-encoding"] = "gzip"
-        answer.headers["content-length"] = str(len(answer.body))
-        await answer(scope, receive, send)
+            headers, pieces = [*headers, (b"content-encoding", b"gzip")], made.gzip(host)
+        else:
+            pieces = made.plain(host)
+        headers.append((b"content-length", b"%d" % sum(map(len, pieces))))
+        await send({"type": "http.response.start", "status": made.status, "headers": headers})
+        for body in _regular(pieces):
+            await send({"type": "http.response.body", "body": body, "more_body": True})
+        await send({"type": "http.response.body", "body": b""})
 
-    async def _make(self, scope: Scope, receive: Receive) -> Response:
+    async def _make(self, scope: Scope, receive: Receive) -> Page:
         """The application's own answer."""
         made: list[Message] = []
 
@@ -78,9 +117,8 @@ class PageCache:
         await self.app({**scope, "headers": [*heard, (b"host", _ANY)], "query_string": b""}, receive, keep)
         body = b"".join(message.get("body", b"") for message in made)
         start = next(message for message in made if message["type"] == "http.response.start")
-        answer = Response(body, status_code=start["status"])
-        answer.raw_headers = list(start["headers"])
-        return answer
+        kept = [pair for pair in start["headers"] if pair[0] not in (b"content-length", b"vary")]
+        return Page(start["status"], kept, body)
 
 
 # ---- the state of open pages ---------------------------------------------------------------------

@@ -6,6 +6,7 @@ history) in order of arrival. Runs are admitted at once, since they wait in :mod
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from typing import Any
 
 from fastapi import HTTPException, Request
 from gradio.queueing import Event, EventQueue, Queue
+from gradio.utils import LRUCache
 
 from webdemo.server.accounts.quotas import OverQuota, Quota
 from webdemo.server.accounts.visitors import Bindings
@@ -30,6 +32,15 @@ REST = 3.0
 texts, one after the other, would take a core from the runs of others."""
 
 
+class _Messages(LRUCache[str, Any]):
+    """The messages of each session. Every stream of a session that is cut off deletes them, the second one as well;
+    where that failed, what Gradio keeps of a stream stayed for ever."""
+
+    def __delitem__(self, session: str) -> None:
+        with contextlib.suppress(KeyError):
+            super().__delitem__(session)
+
+
 class FairEvents(Queue):
     """Gradio's queue with a cap for each person, and turns: the person served least goes first.
 
@@ -45,6 +56,7 @@ class FairEvents(Queue):
 
     def __init__(self, *, quota: Quota, figures: Figures, bindings: Bindings, **options: Any) -> None:
         super().__init__(**options, max_size=None)
+        self.pending_messages_per_session = _Messages(self.pending_messages_per_session.max_size)
         self.quota, self.figures, self.bindings = quota, figures, bindings
         self.accounts = Accounts()
         self._begun: dict[Event, float] = {}
