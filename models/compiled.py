@@ -84,8 +84,8 @@ def cache_folder() -> Path:
 
 def has_bfloat16() -> bool:
     """True if this processor multiplies matrices of bfloat16 numbers itself (AVX512-BF16 or AMX)."""
-    found = torch.cpu.get_capabilities()
-    return bool(found.get("avx512_bf16") or found.get("amx_bf16"))
+    capabilities = torch.cpu.get_capabilities()
+    return bool(capabilities.get("avx512_bf16") or capabilities.get("amx_bf16"))
 
 
 def compile_network(network: nn.Module, key: str, cache: Path | None = None, *, precision: Precision = "f32") -> bool:

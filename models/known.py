@@ -247,21 +247,21 @@ class Hold:
             self._whole = ((control - mean) / std).transpose(1, 2).reshape(len(masks), -1)
         self.moves = self._solved(torch.eye(self._basis.shape[1], dtype=torch.double))
         people = enumerate(zip(known.rows.flatten(0, 1), known.mask.flatten(0, 1), strict=True))
-        found = (_turned(i, rows, mask) for i, (rows, mask) in people)
-        self.turned = [turned for turned in found if turned is not None]
+        parts = (_turned(i, rows, mask) for i, (rows, mask) in people)
+        self.turned = [turned for turned in parts if turned is not None]
 
     def _solved(self, cost: Tensor) -> Moves:
         """The moves of least cost that write what is known; columns that are known throughout are replaced."""
         unit, nothing = torch.eye(len(cost), dtype=torch.double), torch.zeros(len(cost), len(cost))
-        found = [(torch.zeros(0, dtype=torch.long), nothing[:0], nothing)]
+        solved = [(torch.zeros(0, dtype=torch.long), nothing[:0], nothing)]
         for at, mask in self._masks:
             if self._whole is not None and mask.all():
-                found.append((at, self._whole[at], nothing))
+                solved.append((at, self._whole[at], nothing))
                 continue
             seen, wanted = self._basis[mask].double(), self._wanted[at][:, mask].double()
             gain = torch.linalg.solve(seen.T @ seen + _SOFT * cost, seen.T)
-            found.append((at, (wanted @ gain.T).float(), (unit - gain @ seen).float()))
-        columns, offsets, moves = zip(*found, strict=True)
+            solved.append((at, (wanted @ gain.T).float(), (unit - gain @ seen).float()))
+        columns, offsets, moves = zip(*solved, strict=True)
         group = torch.arange(len(columns)).repeat_interleave(torch.tensor([len(each) for each in columns]))
         return Moves(torch.cat(columns), group, torch.cat(offsets), torch.stack(moves))
 
@@ -290,11 +290,11 @@ class Hold:
         """
         free = self._basis.double()
         varies = free.square().sum(1)
-        found = torch.zeros_like(varies)
+        explained = torch.zeros_like(varies)
         of_joints = self.moves.group[self.moves.at % FEATURES < JOINT_NUMBERS]
         for count, move in zip(of_joints.bincount(minlength=len(self.moves.moves)), self.moves.moves, strict=True):
-            found += count * (1 - (free @ move.double()).square().sum(1) / varies)
-        return found / (self.batch * 2 * JOINT_NUMBERS)
+            explained += count * (1 - (free @ move.double()).square().sum(1) / varies)
+        return explained / (self.batch * 2 * JOINT_NUMBERS)
 
     def __call__(self, x: Tensor) -> Tensor:
         """x (B, tokens, 2·token_features) with the known part written in; any B if one motion is known."""
@@ -345,8 +345,8 @@ class Hold:
         first, last = turned.frames[0] - DIES_OUT, turned.frames[-1] + DIES_OUT
         frames = np.concatenate([[first], turned.frames, [last]])
         knots = self.layout.frames_per_knot * (np.arange(body.shape[2]) - 1)
-        found = [np.interp(knots, frames, np.pad(each, 1)) for each in np.unwrap(np.angle(apart))]
-        return torch.from_numpy(np.stack(found)).to(body)
+        angles = [np.interp(knots, frames, np.pad(each, 1)) for each in np.unwrap(np.angle(apart))]
+        return torch.from_numpy(np.stack(angles)).to(body)
 
 
 def _stiffness(knots: int) -> Tensor:
@@ -357,10 +357,10 @@ def _stiffness(knots: int) -> Tensor:
 
 def _alike(masks: Tensor) -> list[tuple[Tensor, Tensor]]:
     """Rows of masks (N, T) that are alike and not empty: (their indices, the mask)."""
-    found: dict[bytes, list[int]] = {}
+    alike: dict[bytes, list[int]] = {}
     for i, packed in enumerate(np.packbits(masks.numpy(), axis=1)):
-        found.setdefault(packed.tobytes(), []).append(i)
-    return [(torch.tensor(at), masks[at[0]]) for at in found.values() if masks[at[0]].any()]
+        alike.setdefault(packed.tobytes(), []).append(i)
+    return [(torch.tensor(at), masks[at[0]]) for at in alike.values() if masks[at[0]].any()]
 
 
 def _turned(row: int, values: Tensor, known: Tensor) -> Turned | None:

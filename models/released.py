@@ -58,10 +58,10 @@ def read_tensors(path: str | Path, *, network: str) -> dict[str, Tensor]:
     if not path.is_file():
         raise WeightsError(f"There is no file {path}: name the released {network} checkpoint.")
     checkpoint = _read_safetensors(path) if path.suffix == ".safetensors" else _read_torch(path, network)
-    found = max(_records(checkpoint), key=len, default={})
-    if not found:
+    records = max(_records(checkpoint), key=len, default={})
+    if not records:
         raise WeightsError(f"{path.name} holds no tensors: use the released {network} checkpoint.")
-    return dict(found)
+    return dict(records)
 
 
 def without_wrapper(tensors: Mapping[str, Tensor], mark: str) -> dict[str, Tensor]:

@@ -75,11 +75,11 @@ def stepping(positions: Array, fps: float) -> Array:
     if len(result) < 4:
         return result
     feet = feet_of(result)
-    found = feet.copy()
+    stepped = feet.copy()
     for start, stop in _glides(result, feet, fps):
         steps = _steps(feet, result[:, 0], start, stop, fps)
-        found[start:stop] = walked(feet, feet, steps, start, stop)[start:stop]
-    return with_feet(result, found)
+        stepped[start:stop] = walked(feet, feet, steps, start, stop)[start:stop]
+    return with_feet(result, stepped)
 
 
 def feet_of(positions: Array) -> Array:
@@ -87,19 +87,19 @@ def feet_of(positions: Array) -> Array:
     return np.stack([positions[:, list(leg[2:])] for leg in LEGS], axis=1)
 
 
-def with_feet(positions: Array, found: Array) -> Array:
-    """A person (T, J, 3) whose feet are as they were ``found`` (T, 2, 2, 3), as far as legs reach."""
+def with_feet(positions: Array, places: Array) -> Array:
+    """A person (T, J, 3) whose ankles and toes are at ``places`` (T, 2, 2, 3), as far as legs reach."""
     result, forward = np.array(positions, dtype=np.float64), facing(positions)
     feet = feet_of(result)
-    moved = np.abs(found - feet).max(axis=(2, 3)) > 1e-6
+    moved = np.abs(places - feet).max(axis=(2, 3)) > 1e-6
     for side, (hip, knee, ankle, toe) in enumerate(LEGS):
         own = moved[:, side]
         if not own.any():
             continue
         bent, met = solve_two_bones(
-            result[own, hip], result[own, knee], result[own, ankle], found[own, side, 0], forward[own]
+            result[own, hip], result[own, knee], result[own, ankle], places[own, side, 0], forward[own]
         )
-        bone = found[own, side, 1] - found[own, side, 0]
+        bone = places[own, side, 1] - places[own, side, 0]
         length = np.linalg.norm(feet[own, side, 1] - feet[own, side, 0], axis=-1, keepdims=True)
         result[own, knee], result[own, ankle] = bent, met
         result[own, toe] = met + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
@@ -112,15 +112,15 @@ def _glides(positions: Array, feet: Array, fps: float) -> list[tuple[int, int]]:
     slower = np.minimum(*(floor_speed(feet[:, side, 1], fps) for side in (0, 1)))
     low = np.minimum(feet[:, 0, 1, 1], feet[:, 1, 1, 1]) < ON_FLOOR
     gliding = (body > _MOVES) & (slower > _GLIDES * body) & low & (positions[:, 0, 1] > UPRIGHT) & (slower > 0.15)
-    found: list[tuple[int, int]] = []
+    stretches: list[tuple[int, int]] = []
     for start, stop in runs(_closed(gliding, fps)):
         way = np.linalg.norm((positions[stop - 1, 0] - positions[start, 0])[[0, 2]])
         if stop - start < _SHORTEST * fps or way < _WAY or body[start:stop].mean() > _RUNS:
             continue
         more = max(0, round((2 * _PERIOD[0] * fps - (stop - start)) / 2))
-        start = max(found[-1][1] if found else 0, start - more)
-        found.append((start, min(len(positions), stop + more)))
-    return found
+        start = max(stretches[-1][1] if stretches else 0, start - more)
+        stretches.append((start, min(len(positions), stop + more)))
+    return stretches
 
 
 def _closed(marked: NDArray[np.bool_], fps: float) -> NDArray[np.bool_]:
@@ -155,10 +155,10 @@ def _steps(feet: Array, pelvis: Array, start: int, stop: int, fps: float) -> lis
 
 def walked(feet: Array, stances: Array, steps: Sequence[Step], start: int, stop: int) -> Array:
     """The feet (T, 2, 2, 3) with the steps of a stretch, set down as in ``stances`` (T, 2, 2, 3)."""
-    found = feet.copy()
+    placed = feet.copy()
     held = [_set_down(feet[start, side]) for side in (0, 1)]
     for side in (0, 1):
-        found[start:stop, side] = held[side]
+        placed[start:stop, side] = held[side]
         for step in (step for step in steps if step.foot == side):
             goal = _set_down(stances[step.goal, side])
             lands = min(step.lands, stop - 1)
@@ -166,17 +166,17 @@ def walked(feet: Array, stances: Array, steps: Sequence[Step], start: int, stop:
             eased = minimum_jerk(share)[:, None, None]
             swing = held[side] + eased * (goal - held[side])
             swing[:, 0, 1] += _RISE * np.sin(np.pi * share) ** 2
-            found[step.leaves : lands + 1, side] = swing
-            found[lands + 1 : stop, side] = goal
+            placed[step.leaves : lands + 1, side] = swing
+            placed[lands + 1 : stop, side] = goal
             held[side] = goal
-    return found
+    return placed
 
 
 def _set_down(foot: Array) -> Array:
     """An ankle and a toe (2, 3) on the floor."""
-    found = np.array(foot)
-    found[:, 1] = np.minimum(found[:, 1], [ANKLE, TOE])
-    return found
+    standing = np.array(foot)
+    standing[:, 1] = np.minimum(standing[:, 1], [ANKLE, TOE])
+    return standing
 
 
 # ---- Turns -----------------------------------------------------------------------------------------------------------
@@ -228,18 +228,18 @@ def pivoting(positions: Array, fps: float) -> Array:
     """
     feet = feet_of(positions)
     forward = facing(positions)
-    found = feet.copy()
+    stepped = feet.copy()
     for turn in _turns(positions, feet, forward, fps):
         under = _under(positions[:, 0], forward, feet)
         inside = slice(turn.start, turn.stop)
         if not turn.start:  # who begins in a turn begins with the feet under the hips
-            found[0] = under[0]
+            stepped[0] = under[0]
         if turn.lands:
             under[turn.stop - 1] = feet[turn.stop - 1]
-        found[inside] = walked(found, under, _pivot_steps(forward, turn, fps), turn.start, turn.stop)[inside]
+        stepped[inside] = walked(stepped, under, _pivot_steps(forward, turn, fps), turn.start, turn.stop)[inside]
         if not turn.lands:
-            found[turn.stop :] = _left_standing(feet, found[turn.stop - 1], turn.stop, fps)
-    return with_feet(positions, found) if (found != feet).any() else np.array(positions)
+            stepped[turn.stop :] = _left_standing(feet, stepped[turn.stop - 1], turn.stop, fps)
+    return with_feet(positions, stepped) if (stepped != feet).any() else np.array(positions)
 
 
 def _turns(positions: Array, feet: Array, forward: Array, fps: float) -> list[Turn]:
@@ -250,7 +250,7 @@ def _turns(positions: Array, feet: Array, forward: Array, fps: float) -> list[Tu
     stands = (positions[:, 0, 1] > UPRIGHT) & (feet[:, :, 1, 1].min(axis=1) < ON_FLOOR)
     behind, under = stands & ((apart < _CROSSED) | (off > _TWISTED)), (apart > _OPEN) & (off < _ALONG)
     at_rest = under & (off < _BEGINS)
-    found: list[Turn] = []
+    turns: list[Turn] = []
     room, least, low = round(_LATER * fps), round(2 * _PIVOT_TIME * fps), 0
     for first, last in runs(_closed(behind, fps)):
         if first < low:
@@ -267,9 +267,9 @@ def _turns(positions: Array, feet: Array, forward: Array, fps: float) -> list[Tu
         if np.linalg.norm(steps, axis=-1).mean() * fps > _WALKS_ON:
             continue  # its steps are those of a walk
         if abs(yaw[stop - 1] - yaw[start]) > _TURNED and stands[start:stop].all() and stop - start >= least:
-            found.append(Turn(start, stop, lands))
+            turns.append(Turn(start, stop, lands))
             low = stop
-    return found
+    return turns
 
 
 def _wanted(turned: float) -> int:
@@ -299,30 +299,30 @@ def _pivot_steps(forward: Array, turn: Turn, fps: float) -> list[Step]:
 def _under(pelvis: Array, forward: Array, feet: Array) -> Array:
     """Feet (T, 2, 2, 3) that stand under the hips, as they are turned, and are as long as the feet were."""
     across = np.cross(_UP, forward)
-    found = feet.copy()
+    standing = feet.copy()
     for side, out in ((0, 1.0), (1, -1.0)):
         along = math.cos(_OUT) * forward + out * math.sin(_OUT) * across
         length = np.linalg.norm((feet[:, side, 1] - feet[:, side, 0])[:, [0, 2]], axis=-1, keepdims=True)
-        found[:, side, 0] = pelvis + out * _BESIDE * across - 0.3 * length * forward
-        found[:, side, 1] = found[:, side, 0] + length * along
-        found[:, side, :, 1] = [ANKLE, TOE]
-    return found
+        standing[:, side, 0] = pelvis + out * _BESIDE * across - 0.3 * length * forward
+        standing[:, side, 1] = standing[:, side, 0] + length * along
+        standing[:, side, :, 1] = [ANKLE, TOE]
+    return standing
 
 
 def _left_standing(feet: Array, stands: Array, stop: int, fps: float) -> Array:
     """The feet (N, 2, 2, 3) from a frame on, which stay as they ``stand`` (2, 2, 3) until their own next step."""
-    found = feet[stop:].copy()
+    placed = feet[stop:].copy()
     for side in (0, 1):
         speed = np.linalg.norm(np.gradient(feet[:, side, 1][:, [0, 2]], axis=0), axis=-1)[stop:] * fps
         goes = speed > _LEAVES
-        leaves = int(np.argmax(goes)) if goes.any() else len(found)
+        leaves = int(np.argmax(goes)) if goes.any() else len(placed)
         rests = ~goes[leaves:]
         lands = leaves + max(int(np.argmax(rests)) if rests.any() else len(rests), 1)
-        found[:leaves, side] = stands[side]
+        placed[:leaves, side] = stands[side]
         fade = 1 - minimum_jerk((np.arange(leaves, lands) - leaves + 1) / (lands - leaves))
         shift = (stands[side] - feet[min(stop + leaves, len(feet) - 1), side]) * [1.0, 0.0, 1.0]
-        found[leaves:lands, side] += fade[:, None, None] * shift
-    return found
+        placed[leaves:lands, side] += fade[:, None, None] * shift
+    return placed
 
 
 def _bearing(line: Array) -> Array:

@@ -78,8 +78,8 @@ def fit_skeleton(
     noise = max(noise or 0.0, stretch)
     rotations, root = _start(target, layout, body)
     rotations, root = solve(rotations, root, target, trust, layout, body, noise, fps, iterations)
-    found = forward_kinematics(rotations, root, body)[:, layout.observed]
-    error = float(np.median(np.linalg.norm(found - target, axis=-1)[trust.max(-1) > 0]))
+    fitted = forward_kinematics(rotations, root, body)[:, layout.observed]
+    error = float(np.median(np.linalg.norm(fitted - target, axis=-1)[trust.max(-1) > 0]))
 
     legs = _leg_length(SMPL22.offsets)
     size = _leg_length(body.offsets) / legs

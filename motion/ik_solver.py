@@ -245,10 +245,10 @@ class _Problem:
 
 def _below(joint: int) -> list[int]:
     """All joints that hang below one."""
-    found: list[int] = []
+    below: list[int] = []
     for child in SMPL22.children[joint]:
-        found += [child, *_below(child)]
-    return found
+        below += [child, *_below(child)]
+    return below
 
 
 def _to_bands(blocks: Array) -> Array:

@@ -118,10 +118,10 @@ def followed_rotations(positions: Array) -> Array:
 def quaternions(rotations: Array) -> Array:
     """(T, …, 4) unit quaternions x y z w of (T, …, 3, 3), of two signs the one nearer to the frame before."""
     turns = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3))
-    found = np.asarray(turns.as_quat()).reshape(*rotations.shape[:-2], 4)
-    flips = np.where(np.sum(found[1:] * found[:-1], axis=-1) < 0, -1.0, 1.0)
-    found[1:] *= np.cumprod(flips, axis=0)[..., None]
-    return found
+    wxyz = np.asarray(turns.as_quat()).reshape(*rotations.shape[:-2], 4)
+    flips = np.where(np.sum(wxyz[1:] * wxyz[:-1], axis=-1) < 0, -1.0, 1.0)
+    wxyz[1:] *= np.cumprod(flips, axis=0)[..., None]
+    return wxyz
 
 
 def rotation_matrices(quaternions: Array) -> Array:

@@ -132,8 +132,8 @@ def steadied(
     side = least_jerk(side, np.where(share[:, 0] > 0, sure, 1e6))
     side = side - _along(side, axis)
     length = np.linalg.norm(side, axis=-1, keepdims=True)
-    found = root + along + aside * side / np.maximum(length, 1e-9)
-    return np.where((length > 0.1) & (share > 0), found, middle)
+    steady = root + along + aside * side / np.maximum(length, 1e-9)
+    return np.where((length > 0.1) & (share > 0), steady, middle)
 
 
 def open_limb(root: Array, middle: Array, end: Array) -> Array:

@@ -77,8 +77,8 @@ COLOURS = Path(__file__).resolve().parents[1] / "static" / "player" / "colours.j
 def themes() -> dict[str, dict[str, Any]]:
     """The JSON that the file exports: each theme's colours (``"#rrggbb"``) and lamps under its name."""
     _, data = COLOURS.read_text(encoding="utf-8").split("export default", 1)
-    found: dict[str, dict[str, Any]] = json.loads(data.strip().removesuffix(";"))
-    return found
+    by_name: dict[str, dict[str, Any]] = json.loads(data.strip().removesuffix(";"))
+    return by_name
 
 
 BODIES: tuple[dict[str, str], dict[str, str]] = tuple(themes()["light"]["bodies"])

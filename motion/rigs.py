@@ -136,10 +136,10 @@ def match_joints(rig: RigMotion) -> BodyParts:
     neck, head = (_best(rig, keys, "centre", part) for part in ("neck", "head"))
     if head is None and neck is not None:
         head = next((joint for joint, parent in enumerate(rig.parents) if parent == neck), None)
-    found: dict[str, int | None] = {"neck": neck, "head": head}
+    joints: dict[str, int | None] = {"neck": neck, "head": head}
     for side, limb in zip(("right", "left") if rig.mirrored else ("left", "right"), limbs.values(), strict=True):
-        found |= {f"{side}_{part}": joint for part, joint in limb.items()}
-    return BodyParts(tuple(spine), {name: joint for name, joint in found.items() if joint is not None})
+        joints |= {f"{side}_{part}": joint for part, joint in limb.items()}
+    return BodyParts(tuple(spine), {name: joint for name, joint in joints.items() if joint is not None})
 
 
 def _helpers(rig: RigMotion, keys: list[Key]) -> frozenset[int]:
@@ -148,27 +148,27 @@ def _helpers(rig: RigMotion, keys: list[Key]) -> frozenset[int]:
     for joint, key in enumerate(keys):
         by_key.setdefault(key, []).append(joint)
     near = _ONE_PLACE * float(np.ptp(rig.positions[0], axis=0).max())
-    found: set[int] = set()
+    helpers: set[int] = set()
     for (side, part), joints in by_key.items():
         for one in joints if side == "left" else ():
             for other in by_key.get(("right", part), ()):
                 if np.linalg.norm(rig.positions[:, one] - rig.positions[:, other], axis=-1).max() < near:
-                    found |= {one, other}
-    return frozenset(found)
+                    helpers |= {one, other}
+    return frozenset(helpers)
 
 
 def _match_limbs(rig: RigMotion, keys: list[Key], side: str, helpers: frozenset[int]) -> dict[str, int | None]:
-    found: dict[str, int | None] = {}
+    joints: dict[str, int | None] = {}
     for part in _LIMB:
-        taken = helpers.union(joint for joint in found.values() if joint is not None)
-        found[part] = _best(rig, keys, side, part, taken, found.get(_BELOW.get(part, "")))
+        taken = helpers.union(joint for joint in joints.values() if joint is not None)
+        joints[part] = _best(rig, keys, side, part, taken, joints.get(_BELOW.get(part, "")))
     # A chain that stops at the forearm or the foot still has a tip (BVH's End Site), which is the next joint.
     for part, carrier in (("wrist", "elbow"), ("foot", "ankle")):
-        parent = found[carrier]
-        if found[part] is None and parent is not None:
+        parent = joints[carrier]
+        if joints[part] is None and parent is not None:
             tips = (joint for joint, name in enumerate(rig.joint_names) if name.endswith("_end"))
-            found[part] = next((joint for joint in tips if rig.parents[joint] == parent), None)
-    return found
+            joints[part] = next((joint for joint in tips if rig.parents[joint] == parent), None)
+    return joints
 
 
 def _best(

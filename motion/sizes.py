@@ -239,7 +239,7 @@ class _Touches:
 
     def goals(self, pair: Array) -> list[list[tuple[Array, Array]]]:
         """For each hand of both people where it should be (T, 3), and how much so (T, 1)."""
-        found: list[list[tuple[Array, Array]]] = []
+        goals_by_limb: list[list[tuple[Array, Array]]] = []
         meetings = self._meetings(pair)
         for person in (0, 1):
             hands = []
@@ -257,12 +257,12 @@ class _Touches:
                 at = touch.place(pair[1 - person], pair[person][:, ARMS[hand]], self.scale, self.embrace)
                 goal = grip * there + (1 - grip) * at
                 hands.append((goal, np.maximum(grip, touch.near[:, None])))
-            found.append(hands)
-        return found
+            goals_by_limb.append(hands)
+        return goals_by_limb
 
     def _meetings(self, pair: Array) -> dict[tuple[int, int], Array]:
         """(T, 3) the place at which each hand of a's meets each of b's: as near to both as both reach."""
-        found = {}
+        meetings = {}
         for mine, theirs in itertools.product((0, 1), (0, 1)):
             arms = (pair[0], ARMS[mine]), (pair[1], ARMS[theirs])
             place = 0.5 * sum(own[:, arm[-1]] for own, arm in arms)
@@ -271,8 +271,8 @@ class _Touches:
                     for (own, arm), side in zip(arms, (0.5, -0.5), strict=True):
                         wrist = place + side * self.apart[:, mine, theirs]
                         place = place + _reached(wrist, own, arm) - wrist
-            found[mine, theirs] = place
-        return found
+            meetings[mine, theirs] = place
+        return meetings
 
 
 class _Touch:

@@ -66,10 +66,10 @@ class Skeleton(Tree):
     @cached_property
     def children(self) -> tuple[tuple[int, ...], ...]:
         """The children of every joint."""
-        found: list[list[int]] = [[] for _ in self.parents]
+        children: list[list[int]] = [[] for _ in self.parents]
         for parent, joint in self.bones:
-            found[parent].append(joint)
-        return tuple(tuple(joints) for joints in found)
+            children[parent].append(joint)
+        return tuple(tuple(joints) for joints in children)
 
     @cached_property
     def bone_lengths(self) -> Array:
@@ -262,11 +262,11 @@ def _layout(
 
 def offsets_of(changed: Mapping[str, tuple[float, float, float]]) -> Array:
     """(22, 3) SMPL22's offsets, of which some are others: metres by joint; the right side mirrors the left."""
-    found = SMPL22.offsets.copy()
+    offsets = SMPL22.offsets.copy()
     for name, offset in changed.items():
-        found[SMPL22.mirror[SMPL22.index(name)]] = np.array(offset) * [-1.0, 1.0, 1.0]
-        found[SMPL22.index(name)] = offset
-    return found
+        offsets[SMPL22.mirror[SMPL22.index(name)]] = np.array(offset) * [-1.0, 1.0, 1.0]
+        offsets[SMPL22.index(name)] = offset
+    return offsets
 
 
 LAYOUTS: dict[str, Layout] = {

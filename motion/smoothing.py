@@ -35,8 +35,8 @@ def least_jerk(values: Array, weights: Array) -> Array:
     middle = flat.mean(axis=0)  # differences of small numbers
     banded = squared_differences(len(flat), (-1.0, 3.0, -3.0, 1.0))
     banded[-1] += weights
-    found = scipy.linalg.solveh_banded(banded, weights[:, None] * (flat - middle), check_finite=False)
-    return np.asarray(found + middle).reshape(np.shape(values))
+    offsets = scipy.linalg.solveh_banded(banded, weights[:, None] * (flat - middle), check_finite=False)
+    return np.asarray(offsets + middle).reshape(np.shape(values))
 
 
 def led(values: Array, fixed: NDArray[np.bool_]) -> Array:
@@ -48,9 +48,9 @@ def led(values: Array, fixed: NDArray[np.bool_]) -> Array:
         return np.array(values, dtype=np.float64)
     away = frames_from(fixed)
     stays = fixed | (away > REACH)
-    found = least_jerk(values, np.where(stays, _FIXED, _SLACK ** (1 - away / (REACH + 1))))
-    found[stays] = values[stays]
-    return found
+    path = least_jerk(values, np.where(stays, _FIXED, _SLACK ** (1 - away / (REACH + 1))))
+    path[stays] = values[stays]
+    return path
 
 
 def filled(positions: Array, label: str = "The motion") -> Array:
@@ -64,18 +64,20 @@ def filled(positions: Array, label: str = "The motion") -> Array:
         return positions
     if lost.all(axis=0).any():
         raise InputError(f"{label} holds a joint that is NaN in every frame: export it again.")
-    found, times = np.array(positions), np.arange(len(positions))
+    complete, times = np.array(positions), np.arange(len(positions))
     for joint in np.flatnonzero(lost.any(axis=0)):
         seen = np.flatnonzero(~lost[:, joint])
         for axis in range(3):
-            found[:, joint, axis] = np.interp(times, seen, positions[seen, joint, axis])
-    return found
+            complete[:, joint, axis] = np.interp(times, seen, positions[seen, joint, axis])
+    return complete
 
 
 def frames_from(marked: NDArray[np.bool_]) -> Array:
     """(T,) distance in frames from the nearest frame that is ``marked`` (T,); T where none is."""
-    found = scipy.ndimage.distance_transform_edt(~marked) if marked.any() else np.full(len(marked), float(len(marked)))
-    return np.asarray(found)
+    distances = (
+        scipy.ndimage.distance_transform_edt(~marked) if marked.any() else np.full(len(marked), float(len(marked)))
+    )
+    return np.asarray(distances)
 
 
 def squared_differences(count: int, coefficients: Sequence[float]) -> Array:

@@ -79,7 +79,7 @@ def _turned(ankle: Array, toe: Array, raised: Array, moved: NDArray[np.bool_]) -
 
 def _heights(toe: Array, hips: Array, upright: NDArray[np.bool_], forward: Array, fps: float) -> Array:
     """(T,) heights that a toe (T, 3) should have at least; none where it does not swing."""
-    speed, found = floor_speed(toe, fps), np.full(len(toe), -np.inf)
+    speed, heights = floor_speed(toe, fps), np.full(len(toe), -np.inf)
     for start, stop in runs(speed > _FAST):
         way = toe[stop - 1] - toe[start]
         way[1] = 0.0
@@ -99,8 +99,8 @@ def _heights(toe: Array, hips: Array, upright: NDArray[np.bool_], forward: Array
         profile = scipy.interpolate.PchipInterpolator(_PHASES, ahead * _FORWARDS + (1 - ahead) * _ASIDE)
         lift = min(length, _LONG) * profile((frames + 0.5 - start) / (stop - start))
         rest = np.interp(frames, [first, last], [toe[first, 1], toe[last, 1]])
-        found[frames] = np.maximum(found[frames], lift + rest)
-    return found
+        heights[frames] = np.maximum(heights[frames], lift + rest)
+    return heights
 
 
 def _raised(ankle: Array, toe: Array, lift: Array, forward: Array) -> Array:

@@ -40,10 +40,10 @@ def caption_bank(scenes: Scenes) -> CaptionBank:
 
 def encode(captions: list[str]) -> torch.Tensor:
     """Unit sentence vectors (N, 384)."""
-    found = torch.empty(len(captions), 384)
+    vectors = torch.empty(len(captions), 384)
     for places, tokens in encoded(captions):
-        found[places] = tokens.pooled().float()
-    return found
+        vectors[places] = tokens.pooled().float()
+    return vectors
 
 
 @torch.no_grad()

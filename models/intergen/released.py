@@ -125,10 +125,10 @@ def read_normaliser(mean: Path, std: Path, width: int) -> tuple[Tensor, Tensor]:
         if not path.is_file():
             raise WeightsError(f"There is no file {path}: name the normaliser that came with the checkpoint.")
         try:
-            found = np.load(path, mmap_mode="r", allow_pickle=False)
-            if found.dtype.kind != "f" or found.size != width:
-                raise ValueError(f"{found.dtype} {found.shape}")
-            values.append(torch.from_numpy(np.array(found, dtype=np.float32).reshape(width)))
+            stored = np.load(path, mmap_mode="r", allow_pickle=False)
+            if stored.dtype.kind != "f" or stored.size != width:
+                raise ValueError(f"{stored.dtype} {stored.shape}")
+            values.append(torch.from_numpy(np.array(stored, dtype=np.float32).reshape(width)))
         except (OSError, ValueError, EOFError) as error:
             raise WeightsError(
                 f"{path.name} is not {width} numbers ({error}): use the normaliser that came with the checkpoint."

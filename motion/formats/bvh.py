@@ -259,15 +259,15 @@ def _three_numbers(words: list[str], where: str, joint: str) -> tuple[float, flo
 
 
 def _channels(words: list[str], where: str, joint: str) -> list[tuple[str, int]]:
-    found = []
+    channels = []
     for word in words[1:]:
         match = re.fullmatch(r"([XYZ])(position|rotation)", word, re.IGNORECASE)
         if not match:
             raise InputError(f"{where}: joint {joint} has an unknown channel {word[:40]!r}.")
-        found.append((match[2].lower(), _AXES[match[1].lower()]))
-    if not words or words[0] != str(len(found)) or len(set(found)) != len(found):
+        channels.append((match[2].lower(), _AXES[match[1].lower()]))
+    if not words or words[0] != str(len(channels)) or len(set(channels)) != len(channels):
         raise InputError(f"{where}: CHANNELS of joint {joint} must be a count and that many different channels.")
-    return found
+    return channels
 
 
 # ---- The numbers of MOTION, block after block, never all at once -----------------------------------------------------
@@ -316,14 +316,14 @@ class Motion:
             stop = _piece_end(self.data, start)
             try:
                 piece = self.data[start:stop]
-                found = np.empty(0) if piece.isspace() else np.fromstring(piece, dtype=np.float64, sep=" ")
+                numbers = np.empty(0) if piece.isspace() else np.fromstring(piece, dtype=np.float64, sep=" ")
             except ValueError:
                 raise InputError(
                     f"{self.label}: after frame {done} something is not a number: export it again."
                 ) from None
-            found = np.concatenate([rest, found]) if len(rest) else found
-            whole = min(len(found) // self.width, self.frames - done)
-            block, rest = found[: whole * self.width].reshape(whole, self.width), found[whole * self.width :]
+            numbers = np.concatenate([rest, numbers]) if len(rest) else numbers
+            whole = min(len(numbers) // self.width, self.frames - done)
+            block, rest = numbers[: whole * self.width].reshape(whole, self.width), numbers[whole * self.width :]
             if not np.abs(block).max(initial=0) <= _LARGEST:
                 frame = done + int(np.argmax(~(np.abs(block) <= _LARGEST).all(axis=1))) + 1
                 raise InputError(f"{self.label} has no usable number in frame {frame}: remove that frame.")
@@ -377,9 +377,9 @@ def _piece_end(data: bytes, start: int) -> int:
     if start + _PIECE >= len(data):
         return len(data)
     for separator in (b"\n", b" "):
-        found = data.rfind(separator, start, start + _PIECE)
-        if found >= 0:
-            return found + 1
+        end = data.rfind(separator, start, start + _PIECE)
+        if end >= 0:
+            return end + 1
     return start + _PIECE
 
 

@@ -53,12 +53,12 @@ def _points(data: bytes, label: str, fps: float | None) -> tuple[list[str], Arra
     if data[parameters + 3] in _OTHERS:
         raise InputError(f"{label} holds the numbers of a DEC or MIPS machine: save it again as Intel's.")
     used, analog, first, last, _, scaled, start, _, often = struct.unpack_from("<5Hf2Hf", data, 2)
-    found = dict(_parameters(data[: parameters + _MOST_BLOCKS * _BLOCK], parameters + 4))
-    rate = fps or float(found["POINT:RATE"][0] if "POINT:RATE" in found else often)
-    count = int(found["POINT:USED"][0]) if "POINT:USED" in found else used
-    scale = float(found["POINT:SCALE"][0] if "POINT:SCALE" in found else scaled)
-    if last == 0xFFFF and "TRIAL:ACTUAL_END_FIELD" in found:  # two words, as 16 bits are not enough
-        low, high = (int(word) % 2**16 for word in found["TRIAL:ACTUAL_END_FIELD"][:2])
+    header = dict(_parameters(data[: parameters + _MOST_BLOCKS * _BLOCK], parameters + 4))
+    rate = fps or float(header["POINT:RATE"][0] if "POINT:RATE" in header else often)
+    count = int(header["POINT:USED"][0]) if "POINT:USED" in header else used
+    scale = float(header["POINT:SCALE"][0] if "POINT:SCALE" in header else scaled)
+    if last == 0xFFFF and "TRIAL:ACTUAL_END_FIELD" in header:  # two words, as 16 bits are not enough
+        low, high = (int(word) % 2**16 for word in header["TRIAL:ACTUAL_END_FIELD"][:2])
         last = low + 2**16 * high
     frames = last - first + 1
     check_rate(rate, label)
@@ -77,15 +77,15 @@ def _points(data: bytes, label: str, fps: float | None) -> tuple[list[str], Arra
     places = values[..., :3].astype(np.float32)
     places *= np.float32(1.0 if scale < 0 else scale)
     places[~(values[..., 3] >= 0)] = np.nan  # no camera saw it
-    unit = _texts(found.get("POINT:UNITS"))[:1]
-    return _names(found, count), places, rate, (unit[0].lower() if unit else "") or "mm"
+    unit = _texts(header.get("POINT:UNITS"))[:1]
+    return _names(header, count), places, rate, (unit[0].lower() if unit else "") or "mm"
 
 
-def _names(found: dict[str, Any], count: int) -> list[str]:
+def _names(parameters: dict[str, Any], count: int) -> list[str]:
     """Of all points: a parameter holds 255 labels, and LABELS2, LABELS3 … hold those after them."""
     names: list[str] = []
     for number in range(1, 2 + count // 255):
-        names += _texts(found.get(f"POINT:LABELS{number if number > 1 else ''}"))
+        names += _texts(parameters.get(f"POINT:LABELS{number if number > 1 else ''}"))
     return [*names[:count], *(f"point {number}" for number in range(len(names), count))]
 
 

@@ -263,13 +263,13 @@ def numbers(array: Array, label: str) -> Array:
     if array.dtype.kind not in "fiu":
         raise InputError(f"{label} holds {array.dtype} where numbers are needed: save float32 metres.")
     with np.errstate(all="ignore"):
-        found = array.astype(np.float32, copy=False)
-    low, high = (float(found.min()), float(found.max())) if found.size else (0.0, 0.0)
+        values = array.astype(np.float32, copy=False)
+    low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
     if not (np.isfinite(low) and np.isfinite(high)):
         raise InputError(f"{label} holds NaN or infinite numbers: remove or repair those frames.")
     if max(-low, high) > 1e4:
         raise InputError(f"{label} holds places more than 10 km away: save metres.")
-    return found
+    return values
 
 
 def frame_rate(stored: Array | None, given: float | None, label: str, *, usual: float = 30.0) -> float:

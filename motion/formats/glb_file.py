@@ -126,21 +126,21 @@ class GlbFile:
             raise InputError(f"{self.label} is no glTF binary file: export it as .glb.")
         if (version := struct.unpack_from("<I", data, 4)[0]) != 2:
             self.refuse(f"it is of glTF version {version}", "export it as glTF 2.0")
-        found: dict[int, bytes] = {}
+        chunks: dict[int, bytes] = {}
         at = 12
         while at + 8 <= len(data):
             length, kind = struct.unpack_from("<II", data, at)
             if length > len(data) - at - 8:
                 self.refuse("it is cut off")
-            found.setdefault(kind, data[at + 8 : at + 8 + length])
+            chunks.setdefault(kind, data[at + 8 : at + 8 + length])
             at += 8 + length + (-length % 4)
         try:
-            document = read_json(found.get(_JSON, b""))
+            document = read_json(chunks.get(_JSON, b""))
         except ValueError as error:
             self.refuse(f"its description {error}", "export the character alone")
         if not isinstance(document, dict):
             self.refuse("its description is none")
-        return document, found.get(_BIN, b"")
+        return document, chunks.get(_BIN, b"")
 
     # ---- numbers -----------------------------------------------------------------------------------
 
@@ -152,10 +152,10 @@ class GlbFile:
 
     def stored(self, accessor: Any, kind: str, most: int, what: str) -> Stored:
         """The place of the rows of an accessor of this kind, at most so many; nothing is decoded yet."""
-        found = self.document["accessors"][self.index(accessor, len(self.document["accessors"]), "accessor")]
-        if found.get("sparse") is not None or found.get("type") != kind or "bufferView" not in found:
+        entry = self.document["accessors"][self.index(accessor, len(self.document["accessors"]), "accessor")]
+        if entry.get("sparse") is not None or entry.get("type") != kind or "bufferView" not in entry:
             self.refuse(f"its {what} are stored in a way that is not read here")
-        count, component = found["count"], found["componentType"]
+        count, component = entry["count"], entry["componentType"]
         if type(count) is not int or not 0 < count <= most:
             self.refuse(
                 f"it has {count!r:.20} {what}, and {most:,} are the limit", "reduce the mesh or the skeleton first"
@@ -163,16 +163,16 @@ class GlbFile:
         if component not in _TYPES:
             self.refuse(f"its {what} are of an unknown kind")
         views = self.document["bufferViews"]
-        view = views[self.index(found["bufferView"], len(views), "buffer view")]
+        view = views[self.index(entry["bufferView"], len(views), "buffer view")]
         if view.get("buffer", 0) != 0 or self.document["buffers"][0].get("uri") is not None:
             self.refuse("it keeps its data in other files", "export it as one .glb file")
         row = np.dtype(_TYPES[component]).itemsize * _WIDTHS[kind]
-        start = self._size(view.get("byteOffset", 0)) + self._size(found.get("byteOffset", 0))
+        start = self._size(view.get("byteOffset", 0)) + self._size(entry.get("byteOffset", 0))
         stride = self._size(view.get("byteStride", 0)) or row
         end = self._size(view.get("byteOffset", 0)) + self._size(view["byteLength"])
         if not row <= stride <= 252 or start + stride * (count - 1) + row > min(end, len(self.blob)):
             self.refuse(f"its {what} lie outside of the file")
-        return Stored(kind, count, component, start, stride, bool(found.get("normalized")))
+        return Stored(kind, count, component, start, stride, bool(entry.get("normalized")))
 
     def decoded(self, stored: Stored, what: str) -> NDArray:
         """(rows, width) the numbers that are stored there."""
@@ -227,8 +227,8 @@ class GlbFile:
         inverse = stored[:count].astype(np.float64).reshape(-1, 4, 4).swapaxes(1, 2)
         if not (np.abs(np.linalg.det(inverse[:, :3, :3])) > 1e-12).all():
             self.refuse("its bind matrices cannot be inverted")
-        found: NDArray[np.floating] = np.linalg.inv(inverse)
-        return found
+        matrices: NDArray[np.floating] = np.linalg.inv(inverse)
+        return matrices
 
     def joint_name(self, node: int) -> str:
         """The name of a node: the bone that VRM says it is, its name, or one made of its number."""
@@ -238,13 +238,13 @@ class GlbFile:
     @cached_property
     def _human_bones(self) -> dict[int, str]:
         """The bones of a VRM character or animation by their nodes: "leftUpperArm" …"""
-        found: dict[int, str] = {}
+        names: dict[int, str] = {}
         for kind in ("VRM", "VRMC_vrm", "VRMC_vrm_animation"):
             bones = self.document.get("extensions", {}).get(kind, {}).get("humanoid", {}).get("humanBones", {})
             if isinstance(bones, list):  # of VRM 0
                 bones = {each["bone"]: each for each in bones}
-            found |= {each["node"]: str(bone) for bone, each in bones.items()}
-        return found
+            names |= {each["node"]: str(bone) for bone, each in bones.items()}
+        return names
 
 
 def packed(document: Mapping[str, Any], blob: bytes) -> bytes:

@@ -69,11 +69,11 @@ def _whole(file: GlbFile) -> list[_Person]:
         raise InputError(f"{file.label} has no animation: export it with one.")
     rigs = people(file, parents)
     still = placed(file, with_those_above([node for rig in rigs for node in rig.nodes], parents), parents)
-    found = [_Person(file, parents, rig, still) for rig in rigs]
-    whole = [person for person in found if person.problem is None]
+    bodies = [_Person(file, parents, rig, still) for rig in rigs]
+    whole = [person for person in bodies if person.problem is None]
     if not whole:
-        assert found[0].problem is not None
-        raise found[0].problem
+        assert bodies[0].problem is not None
+        raise bodies[0].problem
     if len(whole) > MAX_PEOPLE:
         file.refuse(f"it holds {len(whole)} people", f"export {MAX_PEOPLE} at most")
     return whole
@@ -100,7 +100,7 @@ class _Person:
         across = np.array([-1.0 if self.mirrored else 1.0, 1.0, 1.0])
         rest = positions[0] if bound is None else bound[:, :3, 3] * across
         above = np.array(self.rig.above)
-        found = RigMotion(
+        recorded = RigMotion(
             self.names,
             self.rig.above,
             rest - np.where(above[:, None] < 0, 0.0, rest[np.maximum(above, 0)]),
@@ -110,9 +110,9 @@ class _Person:
             every=every,
             mirrored=self.mirrored,
         )
-        lengths = np.linalg.norm(found.offsets[above >= 0], axis=-1).sum()
-        longer = found.bone_lengths.sum() / lengths if lengths > 1e-9 else 1.0
-        return replace(found, offsets=found.offsets * longer)
+        lengths = np.linalg.norm(recorded.offsets[above >= 0], axis=-1).sum()
+        longer = recorded.bone_lengths.sum() / lengths if lengths > 1e-9 else 1.0
+        return replace(recorded, offsets=recorded.offsets * longer)
 
     def at(self, moved: Sequence[Channel], moments: Array) -> Array:
         """(T, J, 3) float32 places of the joints at moments in seconds, in the file's unit."""
@@ -240,7 +240,7 @@ def people(file: GlbFile, parents: Sequence[int]) -> list[Rig]:
         groups = [(bare, [])]
     if not groups[0][0] or any(len(joints) > MOST_JOINTS for joints, _ in groups):
         file.refuse(f"it has no joints, or more than {MOST_JOINTS}")
-    found = []
+    rigs = []
     for joints, its_skins in groups:
         nearest = {-1: -1}  # for each node, the place of the joint that it is, or that is next above it
         ordered: list[int] = []
@@ -251,8 +251,8 @@ def people(file: GlbFile, parents: Sequence[int]) -> list[Rig]:
                 above.append(nearest[node])
                 nearest[node] = len(ordered)
                 ordered.append(node)
-        found.append(Rig(tuple(ordered), tuple(above), tuple(sorted(its_skins))))
-    return found
+        rigs.append(Rig(tuple(ordered), tuple(above), tuple(sorted(its_skins))))
+    return rigs
 
 
 def with_those_above(nodes: Sequence[int], parents: Sequence[int]) -> list[int]:
@@ -269,14 +269,14 @@ def with_those_above(nodes: Sequence[int], parents: Sequence[int]) -> list[int]:
 
 def bind_pose(file: GlbFile, rig: Rig) -> Array | None:
     """(J, 4, 4) the joints while the mesh is as it is stored, in the mesh's axes; None where a skin does not say."""
-    found: dict[int, Array] = {}
+    matrices: dict[int, Array] = {}
     for number in rig.skins:
         skin = file.document["skins"][number]
         joints = file.skin_joints(skin)
         if skin.get("inverseBindMatrices") is None:
             return None
-        found |= dict(zip(joints, file.bind_matrices(skin, len(joints)), strict=True))
-    return np.stack([found[node] for node in rig.nodes]) if found else None
+        matrices |= dict(zip(joints, file.bind_matrices(skin, len(joints)), strict=True))
+    return np.stack([matrices[node] for node in rig.nodes]) if matrices else None
 
 
 def moves(animation: Any, nodes: set[int]) -> bool:
@@ -290,24 +290,24 @@ def channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[Channel]:
 
     All key frames are counted before the first is decoded, and those that several channels share are decoded once.
     """
-    found = _stored_channels(file, animation, nodes)
-    stored = {part for *_, times, values in found for part in (times, values)}
-    if sum(values.rows for values in {values for *_, values in found}) >= MOST_KEYS:
+    listed = _stored_channels(file, animation, nodes)
+    stored = {part for *_, times, values in listed for part in (times, values)}
+    if sum(values.rows for values in {values for *_, values in listed}) >= MOST_KEYS:
         file.refuse(f"it has more than {MOST_KEYS:,} key frames", "lower its frame rate")
     if sum(part.size for part in stored) > len(file.blob):
         file.refuse("its key frames overlap")
     tables = {part: file.decoded(part, "key frames").astype(np.float64, copy=False) for part in stored}
-    clocks = {times: tables[times][:, 0] for *_, times, _ in found}
+    clocks = {times: tables[times][:, 0] for *_, times, _ in listed}
     if any((np.diff(times) < 0).any() or times[0] < 0 for times in clocks.values()):
         file.refuse(_NO_FIT)
     splines = {
         values: tables[values].reshape(-1, 3, tables[values].shape[1])
-        for _, _, way, _, values in found
+        for _, _, way, _, values in listed
         if way == "CUBICSPLINE"
     }
     return [
         Channel(node, path, clocks[times], (splines if way == "CUBICSPLINE" else tables)[values], way)
-        for node, path, way, times, values in found
+        for node, path, way, times, values in listed
     ]
 
 
@@ -315,7 +315,7 @@ def _stored_channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[tup
     """Node, path, way, times and values of each channel, not decoded yet."""
     count = len(file.document.get("nodes", []))
     samplers = animation["samplers"]
-    found: dict[tuple[int, str], tuple[int, str, str, Stored, Stored]] = {}
+    channels: dict[tuple[int, str], tuple[int, str, str, Stored, Stored]] = {}
     for channel in animation["channels"]:
         target = channel["target"]
         if target.get("node") is None or target.get("path") not in _PATHS:
@@ -331,25 +331,25 @@ def _stored_channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[tup
         values = file.stored(sampler["output"], _PATHS[path], 3 * MOST_KEYS, "key frames")
         if values.rows != (3 if way == "CUBICSPLINE" else 1) * times.rows:
             file.refuse(_NO_FIT)
-        found[node, path] = (node, path, way, times, values)
-    return list(found.values())
+        channels[node, path] = (node, path, way, times, values)
+    return list(channels.values())
 
 
 def _numbers(file: GlbFile, values: Any, count: int) -> Array:
-    found = np.array(values, dtype=np.float64)
-    if found.shape != (count,) or not np.isfinite(found).all() or np.abs(found).max() > 1e9:
+    numbers = np.array(values, dtype=np.float64)
+    if numbers.shape != (count,) or not np.isfinite(numbers).all() or np.abs(numbers).max() > 1e9:
         file.refuse("a node in it stands nowhere")
-    return found
+    return numbers
 
 
 def matrices(parts: dict[str, Array]) -> Array:
     """(T, 4, 4) of translations (T or 1, 3), rotations (T or 1, 4) and scales (T or 1, 3)."""
     frames = max(len(part) for part in parts.values())
-    found = np.zeros((frames, 4, 4))
-    found[:, :3, :3] = rotation_matrices(parts["rotation"]) * parts["scale"][:, None]
-    found[:, :3, 3] = parts["translation"]
-    found[:, 3, 3] = 1.0
-    return found
+    local = np.zeros((frames, 4, 4))
+    local[:, :3, :3] = rotation_matrices(parts["rotation"]) * parts["scale"][:, None]
+    local[:, :3, 3] = parts["translation"]
+    local[:, 3, 3] = 1.0
+    return local
 
 
 def placed(
@@ -423,8 +423,8 @@ def chosen(
         for who in range(len(people))
     ]
     numbers = sorted({theirs.index(number) + 1 for number in taken})
-    found = Animations(file.label, tuple(map(_shown, names)), tuple(numbers))
-    return [known[number] for number in taken], found
+    animations = Animations(file.label, tuple(map(_shown, names)), tuple(numbers))
+    return [known[number] for number in taken], animations
 
 
 def _found(names: Sequence[Any], animation: Animation, label: str) -> int:

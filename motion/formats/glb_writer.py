@@ -86,12 +86,12 @@ def _surface(buffer: Buffer, person: Skinned) -> list[dict[str, Any]]:
     body = person.body
     bones, weights = person.bones.astype(np.uint8), person.weights.astype(np.float32)
     vertices = buffer.vertices(body.vertices, body.faces, JOINTS_0=bones, WEIGHTS_0=weights)
-    found = []
+    primitives = []
     for zone, name in enumerate(body.zones):
         if len(faces := body.faces[body.face_zones == zone]):
             colour = linear(person.colours[name])
-            found.append(buffer.primitive(vertices, faces, f"{person.role}_{name}", [*colour], 0.8))
-    return found
+            primitives.append(buffer.primitive(vertices, faces, f"{person.role}_{name}", [*colour], 0.8))
+    return primitives
 
 
 # ---- A file that is being written -----------------------------------------------------------------------------------
@@ -185,11 +185,11 @@ ROUGH = 0.75
 
 def names_of(things: Sequence[Thing]) -> list[str]:
     """A name for each, with a number where several are called the same."""
-    found: list[str] = []
+    names: list[str] = []
     for thing in things:
-        count = sum(1 for other in found if other == thing.name or other.startswith(f"{thing.name} "))
-        found.append(f"{thing.name} {count + 1}" if count else thing.name)
-    return found
+        count = sum(1 for other in names if other == thing.name or other.startswith(f"{thing.name} "))
+        names.append(f"{thing.name} {count + 1}" if count else thing.name)
+    return names
 
 
 def add_things(buffer: Buffer, things: Sequence[Thing], times: int) -> None:

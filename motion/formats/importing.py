@@ -90,30 +90,30 @@ def import_motion(
         InputError: one sentence saying what is wrong with the file or with a choice.
     """
     choices = choices or ImportChoices()
-    found, label = recordings(source, name, choices)
-    return _imported(found[0] if len(found) == 1 else _together(found), label, choices)
+    people, label = recordings(source, name, choices)
+    return _imported(people[0] if len(people) == 1 else _together(people), label, choices)
 
 
 def import_pair(a: str | Path, b: str | Path, *, choices: ImportChoices | None = None) -> Imported:
     """Reads two files of one person each who share one world, as :func:`import_motion` does one."""
     choices = choices or ImportChoices()
-    found = [recordings(source, None, choices)[0][0] for source in (a, b)]
-    return _imported(_together(found), f"{Path(a).name} and {Path(b).name}", choices)
+    people = [recordings(source, None, choices)[0][0] for source in (a, b)]
+    return _imported(_together(people), f"{Path(a).name} and {Path(b).name}", choices)
 
 
-def _together(found: Sequence[Recording]) -> Recording:
+def _together(people: Sequence[Recording]) -> Recording:
     """Two recordings of one person each as one of two."""
-    for recording in found:
+    for recording in people:
         if len(recording.people) != 1:
             raise InputError(f"{recording.people[0].name} already holds two people: give it alone.")
-    first, second = (recording.people[0] for recording in found)
+    first, second = (recording.people[0] for recording in people)
     if isinstance(first, RigMotion) and isinstance(second, RigMotion):
-        return replace(found[0], people=(first, second))
-    alone = [_imported(recording, recording.people[0].name, ImportChoices()).motion for recording in found]
+        return replace(people[0], people=(first, second))
+    alone = [_imported(recording, recording.people[0].name, ImportChoices()).motion for recording in people]
     if isinstance(first, RigMotion) or isinstance(second, RigMotion):
         first, second = (clip for clip in alone if isinstance(clip, Clip))
     frames = min(first.num_frames, second.num_frames)
-    return replace(found[0], people=(first.cut(0, frames), second.cut(0, frames)))
+    return replace(people[0], people=(first.cut(0, frames), second.cut(0, frames)))
 
 
 def _imported(recording: Recording, label: str, choices: ImportChoices) -> Imported:
@@ -122,9 +122,9 @@ def _imported(recording: Recording, label: str, choices: ImportChoices) -> Impor
     people = [without_calibration(person) for person in recording.people]
     rigs = [person for person in people if isinstance(person, RigMotion)]
     clips = [person for person in people if isinstance(person, Clip)]
-    found = _import_rigs(rigs, label, choices) if rigs else _import_clips(clips, recording, label, choices)
-    asks = any(note.endswith((" if it is wrong.", " if it differs.")) for note in found.notes)
-    return replace(found, animations=recording.animations, beside=recording.beside, asks=asks)
+    imported = _import_rigs(rigs, label, choices) if rigs else _import_clips(clips, recording, label, choices)
+    asks = any(note.endswith((" if it is wrong.", " if it differs.")) for note in imported.notes)
+    return replace(imported, animations=recording.animations, beside=recording.beside, asks=asks)
 
 
 def without_calibration(person: Any) -> Any:

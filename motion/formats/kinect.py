@@ -130,10 +130,10 @@ class _Lines:
 
     def words(self, most: int = -1) -> list[str]:
         """The next line's words, of which the first ``most`` are wanted; raises InputError at the end."""
-        found = next(self.lines, None)
-        if found is None:
+        following = next(self.lines, None)
+        if following is None:
             raise InputError(f"{self.label} is cut short at line {self.number}: export it again.")
-        self.number, line = found
+        self.number, line = following
         return line.split(None, most)
 
     def joints(self) -> Array:

@@ -90,29 +90,29 @@ def people_of(names: Sequence[str], points: Array, fps: float, length: str, labe
 
 def _by_person(names: Sequence[str], points: Array) -> list[dict[str, Array]]:
     """Markers (T, 3) by plain name, a group a prefix; those that were never seen are left out."""
-    found: dict[str, dict[str, Array]] = {}
+    people: dict[str, dict[str, Array]] = {}
     for column, name in enumerate(names):
         person, _, marker = name.rpartition(":")
         plain = re.sub(r"[^a-z0-9]", "", marker.lower())
         if np.isfinite(points[:, column]).all(-1).any():
-            found.setdefault(person, {}).setdefault(plain, points[:, column])
-    return list(found.values())
+            people.setdefault(person, {}).setdefault(plain, points[:, column])
+    return list(people.values())
 
 
 def _joints(markers: Points) -> tuple[dict[str, Array], str]:
     """(T, 3) of the joints that are found, and the first that is needed and is not."""
-    found: dict[str, Array] = {}
+    joints: dict[str, Array] = {}
     for side in ("left", "right"):
         for part, choices in _SIDED.items():
             its = choices.replace("*", side[0]).replace("%", side)
             if (place := _mean_of(markers, its)) is not None:
-                found[f"{side}_{part}"] = place
+                joints[f"{side}_{part}"] = place
     for part, choices in _MIDDLE.items():
         if (place := _mean_of(markers, choices)) is not None:
-            found[part] = place
-    _add_hips(found, markers)
+            joints[part] = place
+    _add_hips(joints, markers)
     lacks = (f"{side}_{part}" for part in _NEEDED for side in ("left", "right"))
-    return found, next((joint for joint in lacks if joint not in found), "")
+    return joints, next((joint for joint in lacks if joint not in joints), "")
 
 
 def _mean_of(markers: Points, choices: str) -> Array | None:
@@ -123,7 +123,7 @@ def _mean_of(markers: Points, choices: str) -> Array | None:
     return None
 
 
-def _add_hips(found: dict[str, Array], markers: Points) -> None:
+def _add_hips(joints: dict[str, Array], markers: Points) -> None:
     """Centres of the hips from four markers of the pelvis (Bell, Pedersen and Brand 1990), where they have no own."""
     for left, right, left_back, right_back in _PELVIS:
         back = [name for name in (left_back, right_back, *_SACRUM) if name in markers]
@@ -138,7 +138,7 @@ def _add_hips(found: dict[str, Array], markers: Points) -> None:
         behind = unit(behind)
         down = np.cross(behind, across)
         for side, sign in (("left", 1.0), ("right", -1.0)):
-            found.setdefault(f"{side}_hip", front + width * (0.36 * sign * across + 0.19 * behind + 0.30 * down))
+            joints.setdefault(f"{side}_hip", front + width * (0.36 * sign * across + 0.19 * behind + 0.30 * down))
         return
 
 

@@ -114,8 +114,8 @@ def read_npz(data: bytes, label: str, choices: ImportChoices) -> Recording:
         )
     rate = frame_rate(arrays.get("fps"), choices.fps, label)
     notes = () if choices.fps or "fps" in arrays else (no_rate(label, rate),)
-    found = _recording(arrays[key], rate, label, choices, notes, arrays)
-    return replace(found, beside=_beside(arrays, found, label)) if key == "positions" else found
+    recording = _recording(arrays[key], rate, label, choices, notes, arrays)
+    return replace(recording, beside=_beside(arrays, recording, label)) if key == "positions" else recording
 
 
 def read_npy(data: bytes, label: str, choices: ImportChoices) -> Recording:
@@ -209,20 +209,20 @@ def _skeleton(
             )
         return SKELETONS[order], ()
     body = people[..., : SMPL22.num_joints, :] if count == _SMPL24 else people
-    found, other = likely_skeleton(body)
-    if found is None:
+    likely, other = likely_skeleton(body)
+    if likely is None:
         raise InputError(f"{label} has {count} joints a frame: give {_JOINT_COUNTS}.")
     if other is None:
-        return found, ()
-    return found, (
-        f"{label} has {count} joints without names: the order of {ORDERS[found.name]} was taken, but it may be that of "
-        f"{ORDERS[other.name]}. Choose the order if it is wrong.",
+        return likely, ()
+    return likely, (
+        f"{label} has {count} joints without names: the order of {ORDERS[likely.name]} was taken, but it may be "
+        f"that of {ORDERS[other.name]}. Choose the order if it is wrong.",
     )
 
 
-def _beside(arrays: dict[str, Array], found: Recording, label: str) -> dict[str, Any]:
+def _beside(arrays: dict[str, Array], recording: Recording, label: str) -> dict[str, Any]:
     """Parts of our own file beside two people's positions."""
-    if len(found.people) != 2:
+    if len(recording.people) != 2:
         return {}
     roles = tuple(str(role)[:40] for role in np.atleast_1d(arrays.get("roles", ("a", "b")))[:2])
     try:
@@ -230,7 +230,7 @@ def _beside(arrays: dict[str, Array], found: Recording, label: str) -> dict[str,
         return {
             "roles": (roles[0], roles[1]) if len(roles) == 2 else ("a", "b"),
             "manifest": manifest if isinstance(manifest, dict) and manifest else None,
-            "things": _things_of(arrays, found.people[0].num_frames),
+            "things": _things_of(arrays, recording.people[0].num_frames),
             "grips": grips_of(grips) if "grips" in arrays else (),
             "looks": checked([str(look) for look in np.atleast_1d(arrays.get("looks", UNSAID))[:3]]),
         }

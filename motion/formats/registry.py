@@ -164,11 +164,11 @@ def _in_zip(source: str | Path | bytes, name: str | None) -> list[tuple[bytes, s
             chosen = _chosen(list(parts), label)
             if sum(parts[part].file_size for part in chosen) > MAX_BYTES:
                 raise InputError(f"{label} would unpack to more than {MAX_BYTES // 2**20} MB: cut the motion.")
-            found: list[tuple[bytes, str]] = []
+            files: list[tuple[bytes, str]] = []
             for part in chosen:
                 with archive.open(parts[part]) as stream:  # gives no more than the size that was checked
-                    found.append((stream.read(MAX_BYTES + 1), _shown(part)))
-            return found
+                    files.append((stream.read(MAX_BYTES + 1), _shown(part)))
+            return files
     except InputError:
         raise
     except ZIP_ERRORS as error:

@@ -112,11 +112,11 @@ def _first(arrays: Mapping[str, Array], keys: Sequence[str]) -> Array | None:
 def _vectors(rotations: Array | None, label: str) -> Array:
     """(T, 3 J) rotation vectors of (T, 3 J), (T, J, 3) or (T, J, 3, 3); of matrices those of the body's joints."""
     assert rotations is not None
-    found = numbers(rotations, label)
-    if found.ndim < 2 or not found.size:
+    turns = numbers(rotations, label)
+    if turns.ndim < 2 or not turns.size:
         return np.zeros((0, 0))
-    if found.ndim > 2 and found.shape[-2:] == (3, 3):
-        matrices = found.reshape(len(found), -1, 3, 3)[:, : SMPL22.num_joints]
+    if turns.ndim > 2 and turns.shape[-2:] == (3, 3):
+        matrices = turns.reshape(len(turns), -1, 3, 3)[:, : SMPL22.num_joints]
         vectors = np.empty(matrices.shape[:3], dtype=np.float32)
         try:
             for first in range(0, len(matrices), _AT_ONCE):
@@ -124,8 +124,8 @@ def _vectors(rotations: Array | None, label: str) -> Array:
                 vectors[part] = rotation_vectors(matrices[part])
         except ValueError:
             raise InputError(f"{label} holds matrices that are no rotations: save it again.") from None
-        found = vectors
-    return found.reshape(len(found), -1)
+        turns = vectors
+    return turns.reshape(len(turns), -1)
 
 
 def _posed(poses: Array, trans: Array) -> Array:

@@ -132,10 +132,10 @@ def _skinning(person: Skinned) -> str:
 
 def _paths() -> Iterable[str]:
     """The joints as USD calls them: "pelvis/left_hip/left_knee"."""
-    found: list[str] = []
+    paths: list[str] = []
     for name, parent in zip(JOINTS, ABOVE, strict=True):
-        found.append(f"{found[parent]}/{name}" if parent >= 0 else name)
-    return found
+        paths.append(f"{paths[parent]}/{name}" if parent >= 0 else name)
+    return paths
 
 
 _PATHS = json.dumps(list(_paths()))
@@ -217,14 +217,14 @@ def materials(colours: Mapping[str, str], place: str, rough: float) -> str:
 def things_text(things: Sequence[Thing], taken: Sequence[str]) -> str:
     """Prims of things for the root of the stage; ``taken`` are the names of the prims beside them."""
     used = [name.lower() for name in taken]
-    found = []
+    prims = []
     for thing, called in zip(things, names_of(things), strict=True):
         name = identifier(called, "thing")
         while name.lower() in used:
             name += "_"
         used.append(name.lower())
-        found.append(_thing(thing, name))
-    return "".join(found)
+        prims.append(_thing(thing, name))
+    return "".join(prims)
 
 
 def _thing(thing: Thing, name: str) -> str:

@@ -129,8 +129,8 @@ def depths(first: Array, one: Capsules, second: Array, two: Capsules) -> Array:
         - 2 * middle_a @ middle_b.swapaxes(1, 2)
     )
     frame, i, j = np.nonzero(gap2 < (reach_a[:, :, None] + reach_b[:, None]) ** 2)
-    found = np.zeros(len(first))
+    deepest = np.zeros(len(first))
     if len(frame):
         distance = segment_segment_distance(ends[0][frame, i], ends[1][frame, i], ends[2][frame, j], ends[3][frame, j])
-        np.maximum.at(found, frame, one.radii[i] + two.radii[j] - distance)
-    return found
+        np.maximum.at(deepest, frame, one.radii[i] + two.radii[j] - distance)
+    return deepest

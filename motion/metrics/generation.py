@@ -88,11 +88,11 @@ def multimodality(motion: Array) -> float:
 
 def interval(values: Sequence[float]) -> tuple[float, float]:
     """Mean of repeats and half the width of its 95 % confidence interval (Student's t); 0 for one repeat."""
-    found = np.asarray(values, dtype=np.float64)
-    if len(found) < 2:
-        return float(found.mean()), 0.0
-    width = scipy.stats.t.ppf(0.975, len(found) - 1) * found.std(ddof=1) / np.sqrt(len(found))
-    return float(found.mean()), float(width)
+    sample = np.asarray(values, dtype=np.float64)
+    if len(sample) < 2:
+        return float(sample.mean()), 0.0
+    width = scipy.stats.t.ppf(0.975, len(sample) - 1) * sample.std(ddof=1) / np.sqrt(len(sample))
+    return float(sample.mean()), float(width)
 
 
 def share(passed: int, count: int) -> str:

@@ -50,13 +50,13 @@ def facing_angle(duet: Duet) -> Array:
 
     0 is straight ahead, 180 behind; over the floor plan.
     """
-    found = []
+    angles = []
     for me, other in ((duet.a, duet.b), (duet.b, duet.a)):
         forward = facing(me.positions)[..., [0, 2]]
         towards = (other.positions[:, 0] - me.positions[:, 0])[..., [0, 2]]
         cos = np.sum(forward * towards, axis=-1) / np.maximum(np.linalg.norm(towards, axis=-1), 1e-6)
-        found.append(np.degrees(np.arccos(np.clip(cos, -1.0, 1.0))))
-    return np.array(found)
+        angles.append(np.degrees(np.arccos(np.clip(cos, -1.0, 1.0))))
+    return np.array(angles)
 
 
 @dataclass(frozen=True)
@@ -93,16 +93,16 @@ def contact_events(duet: Duet) -> list[Contact]:
     above_ground = CAPSULES.part(~CAPSULES.are("foot", "ankle"))  # feet side by side on the floor are no kick
     nearest = hand_distance(duet)
     meeting = _stretches(nearest < HANDS_TOUCH, duet.fps, loosely=nearest < HANDS_PART)
-    found = [Contact(*ends, "hands", "hand on hand") for ends in meeting]
+    events = [Contact(*ends, "hands", "hand on hand") for ends in meeting]
     for me, other in ((0, 1), (1, 0)):
         mine, theirs = "AB"[me], "AB"[other]
         on_body = _hand_touching(duet, me)
         for start, stop in meeting:
             on_body[start:stop] = False  # one contact, not two
-        found += [Contact(*ends, "touch", f"hand of {mine} on {theirs}") for ends in _stretches(on_body, duet.fps)]
+        events += [Contact(*ends, "touch", f"hand of {mine} on {theirs}") for ends in _stretches(on_body, duet.fps)]
         kicks = _touching(duet.people[me].positions[:, TOES], duet.people[other].positions, above_ground)
-        found += [Contact(*ends, "foot", f"foot of {mine} on {theirs}") for ends in _stretches(kicks, duet.fps)]
-    return sorted(found, key=lambda contact: (contact.start, contact.kind, contact.label))
+        events += [Contact(*ends, "foot", f"foot of {mine} on {theirs}") for ends in _stretches(kicks, duet.fps)]
+    return sorted(events, key=lambda contact: (contact.start, contact.kind, contact.label))
 
 
 def _hand_touching(duet: Duet, me: int) -> NDArray[np.bool_]:

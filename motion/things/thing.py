@@ -62,9 +62,9 @@ class Mesh:
         step, colours = 1, self.colours.astype(np.int64)
         while True:
             coarse = np.minimum(colours // step * step + step // 2, 255)
-            found, which = np.unique(coarse, axis=0, return_inverse=True)
-            if len(found) <= most:
-                return found.astype(np.uint8), which.reshape(-1)
+            palette, which = np.unique(coarse, axis=0, return_inverse=True)
+            if len(palette) <= most:
+                return palette.astype(np.uint8), which.reshape(-1)
             step *= 2
 
     def spots(self) -> Array:

@@ -97,10 +97,10 @@ def _kicks_stopped(pair: Array, way: Array, near: NDArray[np.bool_], share: Arra
 
 def _leg_depth(pair: Array, person: int, leg: Sequence[int], way: Array, raised: NDArray[np.bool_]) -> Array:
     """(T,) metres that a shank and a foot are in the other's body along a level way, where they are raised."""
-    found = np.zeros(len(way))
+    deepest = np.zeros(len(way))
     at = np.flatnonzero(raised)
     if not len(at):
-        return found
+        return deepest
     starts, ends, radii, lower = _segments(pair[:, at])
     own = np.flatnonzero(np.isin(_BODY.ends, leg[2:]))
     other = np.flatnonzero(~lower)
@@ -113,8 +113,8 @@ def _leg_depth(pair: Array, person: int, leg: Sequence[int], way: Array, raised:
         radii[other],
         way[at],
     )
-    found[at] = depth.max(axis=(1, 2))
-    return found
+    deepest[at] = depth.max(axis=(1, 2))
+    return deepest
 
 
 def _foot_moved(person: Array, leg: Sequence[int], by: Array) -> Array:
@@ -146,13 +146,13 @@ def _way(pair: Array) -> Array:
 def _pushes(pair: Array, way: Array, near: NDArray[np.bool_]) -> tuple[Array, Array]:
     """(T,) metres by which two bodies, and their feet, are to be further apart along a level way (T, 3)."""
     at = np.flatnonzero(near)
-    found = np.zeros((2, len(way)))
+    pushes = np.zeros((2, len(way)))
     starts, ends, radii, lower = _segments(pair[:, at])
     depth = _depth(starts[0], ends[0], radii, starts[1], ends[1], radii, way[at])
     of_legs = lower[:, None] | lower
     for kind, kept in enumerate((~of_legs, of_legs)):
-        found[kind, at] = np.where(kept, depth, 0.0).max(axis=(1, 2))
-    return found[0], found[1]
+        pushes[kind, at] = np.where(kept, depth, 0.0).max(axis=(1, 2))
+    return pushes[0], pushes[1]
 
 
 def _depth(

@@ -63,13 +63,13 @@ def arms_apart(pair: Array, free: Array | None = None, sizes: tuple[float, float
 
 def _touching(pair: Array, near: NDArray[np.bool_], sizes: tuple[float, float]) -> NDArray[np.bool_]:
     """(T,) frames at which an arm is in the other's body."""
-    found = np.zeros(pair.shape[1], dtype=bool)
+    touching = np.zeros(pair.shape[1], dtype=bool)
     at = np.flatnonzero(near)
     grips = grips_of_hands(pair[:, at])
     for person in (0, 1):
         push = _pushes(pair[person][at], pair[1 - person][at], grips[person], sizes[person], sizes[1 - person])
-        found[at] |= np.abs(push).max(axis=(1, 2, 3)) > 0
-    return found
+        touching[at] |= np.abs(push).max(axis=(1, 2, 3)) > 0
+    return touching
 
 
 def _stretches(marked: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -136,7 +136,7 @@ def _pushes(own: Array, other: Array, grips: Array, own_size: float, other_size:
     length2 = np.maximum(np.einsum("nci,nci->nc", along, along), 1e-12)
     an_arm = _BODY.are("elbow", "wrist")
     give, soft = np.where(an_arm, 0.5, 1.0), np.where(an_arm, _SOFT_ARMS, SOFT)
-    found = np.zeros((len(own), 2, 2, 3))
+    pushes = np.zeros((len(own), 2, 2, 3))
     for side, (shoulder, elbow, wrist) in enumerate(ARMS):
         points = np.stack(
             [
@@ -164,8 +164,8 @@ def _pushes(own: Array, other: Array, grips: Array, own_size: float, other_size:
         for joint, weight in ((0, 1 - lower), (1, lower)):
             each = push * weight[:, None]
             biggest = np.abs(each).max(axis=1)
-            found[:, side, joint] = np.where(each.max(axis=1) >= biggest, each.max(axis=1), each.min(axis=1))
-    return found
+            pushes[:, side, joint] = np.where(each.max(axis=1) >= biggest, each.max(axis=1), each.min(axis=1))
+    return pushes
 
 
 # ---- Embraces: people who reach around each other come close, and their hands lie on the other's back ---------------
@@ -251,14 +251,14 @@ def _around(own: Array, other: Array, least: float = _AROUND[0]) -> NDArray[np.b
     way = _way(own, other)
     across = left_of(way)
     low, high = other[:, 0, 1], other[:, SMPL22.index("neck"), 1] + 0.05
-    found = []
+    masks = []
     for *_, wrist in ARMS:
         hand = own[:, wrist] - spine
         past = np.einsum("ti,ti->t", hand, way) > least
         beside = np.abs(np.einsum("ti,ti->t", hand, across)) < _AROUND[1]
-        found.append(past & beside & (low < own[:, wrist, 1]) & (own[:, wrist, 1] < high))
+        masks.append(past & beside & (low < own[:, wrist, 1]) & (own[:, wrist, 1] < high))
     near = np.linalg.norm((spine - own[:, _SPINE]) * FLAT, axis=-1) < _MOST
-    return np.stack(found, axis=1) & near[:, None]
+    return np.stack(masks, axis=1) & near[:, None]
 
 
 def _hugs(pair: Array) -> NDArray[np.bool_]:

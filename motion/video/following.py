@@ -192,5 +192,5 @@ def gaze(points: Array, seen: Array, turn: Array) -> Gaze | None:
     if not length > _LEAST:
         return None
     way = -middle @ turn.T * FLAT
-    found = Gaze(ahead / length, 0.0)
-    return Gaze(found.ahead, found.towards(way))
+    ahead = ahead / length
+    return Gaze(ahead, Gaze(ahead, 0.0).towards(way))

@@ -100,17 +100,17 @@ def person_of(landmarks: Landmarks, *, name: str = "Film") -> Filmed:
 
 def _check_seen(track: Track, landmarks: Landmarks) -> None:
     """Raises InputError for people who lie on their side, or whose legs are hardly ever in the picture."""
-    found = track.found
+    seen = track.found
     ends = np.nanmedian(
-        track.pixels[found][:, [INDEX["left_shoulder"], INDEX["right_shoulder"]]].mean(axis=1)
-        - track.pixels[found][:, [INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=1),
+        track.pixels[seen][:, [INDEX["left_shoulder"], INDEX["right_shoulder"]]].mean(axis=1)
+        - track.pixels[seen][:, [INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=1),
         axis=0,
     )
     if abs(ends[0]) > 2 * abs(ends[1]):
         raise InputError("The film lies on its side: turn it upright and choose it again.")
     if ends[1] > 0:
         raise InputError("The film stands on its head: turn it upright and choose it again.")
-    if _legs_seen(track, landmarks)[found].mean() < 0.25:
+    if _legs_seen(track, landmarks)[seen].mean() < 0.25:
         raise InputError("The legs are not in the picture: step back so that the whole body is seen.")
 
 
@@ -125,11 +125,11 @@ def in_camera(track: Track, landmarks: Landmarks) -> Array:
     """(T, 33, 3) points in metres along the camera's axes: their place in the picture, at the depth of the body."""
     focal = focal_length(landmarks.width, landmarks.height)
     pixels = track.pixels - np.array([landmarks.width, landmarks.height]) / 2
-    found = track.found
+    seen = track.found
     world = np.full(track.world.shape, np.nan)
-    world[found] = np.einsum("tij,tpj->tpi", towards(pixels[found], focal), track.world[found])
+    world[seen] = np.einsum("tij,tpj->tpi", towards(pixels[seen], focal), track.world[seen])
     path = np.full((len(track), 3), np.nan)
-    path[found] = translation(world[found], pixels[found], track.seen[found], focal)
+    path[seen] = translation(world[seen], pixels[seen], track.seen[seen], focal)
     depth = smooth(path[:, 2:], track.fps, seconds=0.5)
     z = np.maximum(world[..., 2] + depth, 0.2)
     return np.concatenate([pixels * z[..., None] / focal, z[..., None]], axis=-1)

@@ -55,16 +55,16 @@ def translation(world: Array, pixels: Array, seen: Array, focal: float) -> Array
     rows[..., 2] = -pixels / focal
     known = pixels / focal * world[..., 2:] - world[..., :2]
     weights = seen**2 + 1e-4
-    found = np.zeros((len(world), 3))
+    places = np.zeros((len(world), 3))
     for _ in range(3):
         scaled = rows * weights[..., None, None]
         normal = np.einsum("tpki,tpkj->tij", scaled, rows)
         right = np.einsum("tpki,tpk->ti", scaled, known)
-        found = np.linalg.solve(normal, right[..., None])[..., 0]
-        off = np.linalg.norm(np.einsum("tpki,ti->tpk", rows, found) - known, axis=-1)
+        places = np.linalg.solve(normal, right[..., None])[..., 0]
+        off = np.linalg.norm(np.einsum("tpki,ti->tpk", rows, places) - known, axis=-1)
         weights = (seen**2 + 1e-4) / (1 + (off / _ROBUST) ** 2)
-    found[:, 2] = np.maximum(found[:, 2], _NEAREST)
-    return found
+    places[:, 2] = np.maximum(places[:, 2], _NEAREST)
+    return places
 
 
 def smooth(values: Array, fps: float, *, seconds: float) -> Array:
@@ -93,8 +93,8 @@ def body_tilt(world: Array, seen: Array) -> float:
     """
     head = world[:, [INDEX["left_shoulder"], INDEX["right_shoulder"]]].mean(axis=1)
     foot = world[:, [INDEX["left_ankle"], INDEX["right_ankle"]]].mean(axis=1)
-    found = np.isfinite(head).all(axis=-1) & np.isfinite(foot).all(axis=-1)
-    up, seen = (head - foot)[found], seen[found]
+    usable = np.isfinite(head).all(axis=-1) & np.isfinite(foot).all(axis=-1)
+    up, seen = (head - foot)[usable], seen[usable]
     length = np.asarray(np.linalg.norm(up, axis=-1))
     # Who bends or kicks says nothing about the vertical.
     tall = length > 0.9 * np.percentile(length, 90)

@@ -18,14 +18,14 @@ Parts = dict[str, nn.Module | torch.optim.Optimizer]
 
 
 def _tensors(parts: Parts) -> dict[str, Tensor]:
-    found: dict[str, Tensor] = {}
+    tensors: dict[str, Tensor] = {}
     for name, part in parts.items():
         if isinstance(part, nn.Module):
-            found |= {f"{name}/{key}": value for key, value in part.state_dict().items()}
+            tensors |= {f"{name}/{key}": value for key, value in part.state_dict().items()}
         else:
             for row, state in part.state_dict()["state"].items():
-                found |= {f"{name}/{row}/{key}": torch.as_tensor(value) for key, value in state.items()}
-    return {key: value.detach().contiguous().cpu().clone() for key, value in found.items()}
+                tensors |= {f"{name}/{row}/{key}": torch.as_tensor(value) for key, value in state.items()}
+    return {key: value.detach().contiguous().cpu().clone() for key, value in tensors.items()}
 
 
 def write_tensors(path: Path, tensors: dict[str, Tensor], **known: Any) -> None:

@@ -86,8 +86,8 @@ def encoded(captions: Sequence[str]) -> Iterator[tuple[list[int], TokenFeatures]
     for start in range(0, len(order), 128):
         places = order[start : start + 128]
         with mixed_precision("cpu"):
-            found = encoder([captions[place] for place in places])
-        yield places, found
+            features = encoder([captions[place] for place in places])
+        yield places, features
 
 
 def _kept(captions: Sequence[str]) -> dict[str, Tensor]:

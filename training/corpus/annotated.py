@@ -48,19 +48,19 @@ def motions_in(data: Path) -> list[tuple[str, tuple[Path, Path], Path]]:
         InputError: if the folder holds no motions of two people.
     """
     human = data / "motions_processed" if (data / "motions_processed").is_dir() else data
-    found = [
+    motions = [
         (f"interhuman/{path.stem}", (path, human / "person2" / path.name), data / "annots" / f"{path.stem}.txt")
         for path in sorted((human / "person1").glob("*.npy"))
     ] or [
         (f"interx/{path.name}", (path / "P1.npz", path / "P2.npz"), data / "texts" / f"{path.name}.txt")
         for path in sorted(file.parent for file in (data / "motions").glob("*/P1.npz"))
     ]
-    if not found:
+    if not motions:
         raise InputError(
             f"{data} holds no motions_processed/person1/*.npy, motions/*/P1.npz or new_joint_vecs/*.npy: give the "
             "folder of InterHuman, Inter-X or HumanML3D."
         )
-    return found
+    return motions
 
 
 def read_annotated(data: Path, second_acts: Collection[str] = ()) -> Iterator[Scene]:
@@ -134,13 +134,13 @@ def read_singles(data: Path) -> Iterator[Scene]:
 
 def _told(text: Path, name: str) -> list[str]:
     """The sentences on all of a clip that begin with somebody, with the name of the person who does it here."""
-    found = []
+    sentences = []
     for line in _lines(text):
         words, *when = line.strip().split("#")
         somebody = _SOMEBODY.match(words)
         if somebody and set(when[1:]) <= _WHOLE:
-            found.append(f"person {name}{words[somebody.end() :].rstrip('. ')}")
-    return found[:_MOST_SENTENCES]
+            sentences.append(f"person {name}{words[somebody.end() :].rstrip('. ')}")
+    return sentences[:_MOST_SENTENCES]
 
 
 def _apart(a: np.ndarray, b: np.ndarray, aside: float) -> np.ndarray | None:
@@ -157,12 +157,12 @@ def _apart(a: np.ndarray, b: np.ndarray, aside: float) -> np.ndarray | None:
 
 def _splits(data: Path) -> dict[str, str]:
     """The split of each motion that a list names."""
-    found: dict[str, str] = {}
+    splits: dict[str, str] = {}
     for folder in (data, data / "split", data / "splits"):
         for file, split in SPLITS.items():
             if (folder / file).is_file():
-                found |= dict.fromkeys((folder / file).read_text(encoding="utf-8").split(), split)
-    return found
+                splits |= dict.fromkeys((folder / file).read_text(encoding="utf-8").split(), split)
+    return splits
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -31,11 +31,11 @@ SOFT = 0.06
 
 
 def _below(joint: int) -> list[int]:
-    found = [joint]
+    joints = [joint]
     for parent, child in SMPL22.bones:
-        if parent in found:
-            found.append(child)
-    return found[1:]
+        if parent in joints:
+            joints.append(child)
+    return joints[1:]
 
 
 _DESCENDANTS = {joint: _below(joint) for joint in (*SPINE, NECK)}

@@ -112,23 +112,23 @@ def steps(cue: str) -> Groups:
     """
     groups = []
     for step in cue.split(">") if cue else ():
-        found = []
+        phases = []
         for text in step.split("+"):
             match = _STEP.fullmatch(text)
             if match is None:
                 raise KeyError(f"{text!r} in the cue {cue!r} is no act: write an entry's name, as in pat:shoulder.")
             entry(match[1])
-            found.append((match[1], match[2], match[3], bool(match[4])))
-        groups.append(tuple(found))
+            phases.append((match[1], match[2], match[3], bool(match[4])))
+        groups.append(tuple(phases))
     return tuple(groups)
 
 
 def entry(name: str) -> Entry:
     """An entry of the lexicon; raises KeyError with its name."""
-    found = lexicon().entries.get(name)
-    if found is None:
+    known = lexicon().entries.get(name)
+    if known is None:
         raise KeyError(f"No entry {name!r} in the lexicon of acts.")
-    return found
+    return known
 
 
 def label(beats: Sequence[Beat], frames: int) -> Label:
@@ -185,8 +185,8 @@ class _Writer:
 def _act(made: str, beat: Beat, people: tuple[int, ...], step: Step) -> Act:
     """The act of a step of a beat."""
     name, part, side, offered = step
-    found = entry(name)
-    at_other = found.to == "other" or any("{b}" in caption for caption in found.caption[:1])
+    listed = entry(name)
+    at_other = listed.to == "other" or any("{b}" in caption for caption in listed.caption[:1])
     known: dict[str, Any] = {}
     if name != STILL:
         style = beat.styles[people[0]] or "normal"

@@ -110,7 +110,7 @@ def twirls(people: Array) -> list[tuple[int, int, int]]:
     rows = np.arange(len(gaps))
     height = (a[rows, own, 1] + b[rows, other, 1]) / 2
     angles = [np.unwrap(heading(person)) for person in people]
-    found = []
+    turns = []
     for patient in (0, 1):
         raised = led & (height > people[patient, :, _NECK, 1])
         rate = uniform_filter1d(np.gradient(angles[patient]) * FPS, 5, mode="nearest")
@@ -119,5 +119,5 @@ def twirls(people: Array) -> list[tuple[int, int, int]]:
                 turned = abs(angles[patient][stop - 1] - angles[patient][start])
                 led_by = abs(angles[1 - patient][stop - 1] - angles[1 - patient][start])
                 if turned >= TURN and led_by < turned / 2 and raised[start:stop].mean() > 0.3:
-                    found.append((patient, start, stop))
-    return sorted(found, key=lambda one: one[1])
+                    turns.append((patient, start, stop))
+    return sorted(turns, key=lambda one: one[1])

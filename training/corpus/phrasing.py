@@ -81,13 +81,13 @@ def _reworded(phrase: str, known: Entry) -> list[str]:
 
 def _of_frames(known: Entry) -> list[str]:
     """The entry's frames that are nothing but verbs, particles and the other person."""
-    found = []
+    captions = []
     for frame in known.frames:
         subject, verbs, *rest = frame.replace("?", "").split()
         if all(word == "{b}" or _PLAIN.issuperset(word.split("|")) for word in rest):
             choices = product([v for v in verbs.split("|") if v not in _LIGHT], *(w.split("|") for w in rest))
-            found += [" ".join([subject, f"[{verb}]", *words]) for verb, *words in choices]
-    return found
+            captions += [" ".join([subject, f"[{verb}]", *words]) for verb, *words in choices]
+    return captions
 
 
 @cache
@@ -117,18 +117,18 @@ def fitting(act: Act, *, sided: bool) -> list[str]:
         sided: only those that name the act's side, if there are any; else only those that name none.
     """
     both = len(act.agents) == 2
-    found = [text for text in phrases(act.act) if both or not text.startswith("{a+b}")]
+    texts = [text for text in phrases(act.act) if both or not text.startswith("{a+b}")]
     if both and entry(act.act).to != "other":
-        mutual = [text for text in found if text.startswith("{a+b}") or "{b}" in text]
-        found = mutual or found
-    found = [text for text in found if reads_back(act.act, text, both=both)] or found
-    found = [text for text in found if act.part or "{part}" not in text]
-    found = [text for text in found if act.direction or "{direction}" not in text]
-    found = [text for text in found if act.thing or "{thing}" not in text] or found
+        mutual = [text for text in texts if text.startswith("{a+b}") or "{b}" in text]
+        texts = mutual or texts
+    texts = [text for text in texts if reads_back(act.act, text, both=both)] or texts
+    texts = [text for text in texts if act.part or "{part}" not in text]
+    texts = [text for text in texts if act.direction or "{direction}" not in text]
+    texts = [text for text in texts if act.thing or "{thing}" not in text] or texts
     if both and act.side != "both":  # "they wave with the left hand" has one hand of the two
-        found = [text for text in found if "with {limb}" not in text and "{side}" not in text] or found
-    with_side = [text for text in found if "{limb}" in text or ("{side}" in text and act.side != "both")]
-    return with_side if sided and with_side else [text for text in found if not names_side(text)] or found
+        texts = [text for text in texts if "with {limb}" not in text and "{side}" not in text] or texts
+    with_side = [text for text in texts if "{limb}" in text or ("{side}" in text and act.side != "both")]
+    return with_side if sided and with_side else [text for text in texts if not names_side(text)] or texts
 
 
 def spoken(act: Act, phrase: str, other: str, whose: str, form: str) -> str:

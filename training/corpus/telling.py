@@ -55,17 +55,17 @@ class Teller:
             people: "ab" for all that the two do, "a" or "b" for what one of them does.
             only: the ids of the acts that are told.
         """
-        found: dict[str, None] = {}
+        sentences: dict[str, None] = {}
         for _ in range(15 * count):
             groups = self._chosen(only, people)
-            if not groups or len(found) == count:
+            if not groups or len(sentences) == count:
                 break
             cast = draw_cast(self.rng, joint=len(groups[0][0].agents) == 2)
             writer = _Writer(self.rng, cast, self.split, alone=len(people) == 1)
             text = writer.write(groups)
             if writer.test == (self.split == "test") and len(text) <= LONGEST and not kept_out(text):
-                found[text] = None
-        return list(found)
+                sentences[text] = None
+        return list(sentences)
 
     def _chosen(self, only: Collection[str] | None, people: str) -> list[list[Act]]:
         """The acts that a caption tells, in groups that follow each other."""
@@ -85,14 +85,14 @@ class Teller:
 
 def _without_repeats(groups: list[list[Act]]) -> list[list[Act]]:
     """The groups without saying again that a person stands still, where the group before says it."""
-    found: list[list[Act]] = []
+    shortened: list[list[Act]] = []
     still: set[tuple[str, ...]] = set()
     for group in groups:
         kept = [act for act in group if act.act != STILL or act.agents not in still]
         still = {act.agents for act in group if act.act == STILL}
         if kept:
-            found.append(kept)
-    return found
+            shortened.append(kept)
+    return shortened
 
 
 class _Writer:

@@ -78,10 +78,10 @@ class Features:
 
     def text(self, captions: Sequence[str]) -> Array:
         """(N, D) float64."""
-        found = torch.empty(len(captions), self.extractor.settings.features)
+        features = torch.empty(len(captions), self.extractor.settings.features)
         for places, tokens in encoded(captions):
-            found[places] = self.extractor.text(tokens).detach().float()
-        return found.double().numpy()
+            features[places] = self.extractor.text(tokens).detach().float()
+        return features.double().numpy()
 
 
 def measure(
@@ -118,13 +118,13 @@ def measure(
     others = [train[i] for i in rng.permutation(len(train))[: len(rows)]]
     other = features.motion([real_duet(scenes, row) for row in others])
 
-    found: dict[str, dict[str, list[float]]] = {kind: {name: [] for name in MEASURES} for kind in ("real", "generated")}
+    measured = {kind: {name: [] for name in MEASURES} for kind in ("real", "generated")}
 
     def add(kind: str, motion: Array, text: Array, **more: float) -> None:
         precision = zip(MEASURES, r_precision(motion, text, rng=rng, pool=POOL), strict=False)
         distances = {"MM distance": multimodal_distance(motion, text), "diversity": diversity(motion, rng=rng)}
         for name, value in (dict(precision) | distances | more).items():
-            found[kind][name].append(value)
+            measured[kind][name].append(value)
 
     for repeat in range(max(repeats, 20)):
         tasks = [_task(scenes, row, rng) for row in rows]
@@ -137,7 +137,7 @@ def measure(
             add("generated", made, text, FID=frechet_distance(made, real), multimodality=multimodality(spread))
     return {
         kind: {name: [round(v, 4) for v in interval(values)] for name, values in own.items() if values}
-        for kind, own in found.items()
+        for kind, own in measured.items()
     }
 
 
@@ -146,11 +146,11 @@ def _task(scenes: Scenes, row: dict[str, Any], rng: np.random.Generator) -> Task
     return caption, scenes.layout.num_frames(row["tokens"])
 
 
-def table(found: dict[str, dict[str, list[float]]]) -> str:
+def table(values: dict[str, dict[str, list[float]]]) -> str:
     """The measures as Markdown."""
     lines = ["| Measure (95 % interval) | Generated | Real motion |", "|---|---|---|"]
     for name in MEASURES:
-        lines.append(f"| {name} | {_cell(found['generated'][name])} | {_cell(found['real'].get(name))} |")
+        lines.append(f"| {name} | {_cell(values['generated'][name])} | {_cell(values['real'].get(name))} |")
     return "\n".join(lines) + "\n"
 
 
@@ -181,8 +181,8 @@ def main(argv: list[str] | None = None) -> int:
             return draw(engine, tasks, seed, **sampling)
 
         sizes = {name: getattr(options, name) for name in ("prompts", "repeats", "seed")}
-        found = measure(scenes, extractor, drawn, **sizes)
-        write_scores(options, found, table(found))
+        values = measure(scenes, extractor, drawn, **sizes)
+        write_scores(options, values, table(values))
 
     return exit_code(job)
 

@@ -118,9 +118,9 @@ def diversity_score(real: Array, made: Array) -> float:
 
 def measured(network: DeepGRU, clips: Sequence[Array], labels: Sequence[int], real: Array) -> dict[str, float]:
     """Accuracy, FVD and diversity of clips beside the deep features of recorded ones."""
-    found = deep_features(network, clips)
+    features = deep_features(network, clips)
     return {
         "accuracy": round(accuracy(network, clips, labels), 4),
-        "fvd": round(frechet_distance(real, found), 4),
-        "diversity": round(diversity_score(real, found), 4),
+        "fvd": round(frechet_distance(real, features), 4),
+        "diversity": round(diversity_score(real, features), 4),
     }

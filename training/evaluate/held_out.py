@@ -99,8 +99,8 @@ def _run(options: argparse.Namespace) -> None:
     for path in options.models:
         model = load_model(path, data)
         for kind in options.given:
-            found = errors(model, data, kind, options.batches)
-            by_step = {str(t): round(float(e), 4) for t, e in zip(TIMESTEPS, found, strict=True)}
+            by_timestep = errors(model, data, kind, options.batches)
+            by_step = {str(t): round(float(e), 4) for t, e in zip(TIMESTEPS, by_timestep, strict=True)}
             print(json.dumps({"model": path.name, "given": kind} | by_step), flush=True)
 
 

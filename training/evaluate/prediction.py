@@ -80,23 +80,23 @@ def glide(positions: Array) -> float:
     return float(100 * FPS * moves[both].mean()) if both.any() else 0.0
 
 
-def markdown(found: dict[str, Scores]) -> str:
+def markdown(results: dict[str, Scores]) -> str:
     """The scores by method as a table."""
-    speeds = {name: scores.speed / scores.true_speed for name, scores in found.items()}
-    methods = [name for name in found if name != TRUTH]
+    speeds = {name: scores.speed / scores.true_speed for name, scores in results.items()}
+    methods = [name for name in results if name != TRUTH]
     head = " | ".join(f"{frame / FPS:.2g} s" for frame in AHEAD)
-    lines = [f"| {found[TRUTH].windows} windows | {head} |", "|---|" + "---:|" * len(AHEAD)]
+    lines = [f"| {results[TRUTH].windows} windows | {head} |", "|---|" + "---:|" * len(AHEAD)]
     for name in methods:
-        lines.append(f"| {name}, mm | {' | '.join(f'{found[name].error[f - 1]:.0f}' for f in AHEAD)} |")
+        lines.append(f"| {name}, mm | {' | '.join(f'{results[name].error[f - 1]:.0f}' for f in AHEAD)} |")
     for name in methods:
         if speeds[name].any():
             ratios = " | ".join(f"{speeds[name][f - 1]:.2f}" for f in AHEAD)
             lines.append(f"| {name}, speed over the truth's | {ratios} |")
-    lines += ["", f"|  | {' | '.join(found)} |", "|---|" + "---:|" * len(found)]
+    lines += ["", f"|  | {' | '.join(results)} |", "|---|" + "---:|" * len(results)]
     for label, values in (
         ("slowest and fastest step over the truth's", [f"{s.min():.2f} to {s.max():.2f}" for s in speeds.values()]),
-        ("first step within the past's largest", [f"{scores.seam:.1%}" for scores in found.values()]),
-        ("standing feet glide, cm/s", [f"{scores.glide:.1f}" for scores in found.values()]),
+        ("first step within the past's largest", [f"{scores.seam:.1%}" for scores in results.values()]),
+        ("standing feet glide, cm/s", [f"{scores.glide:.1f}" for scores in results.values()]),
     ):
         lines.append(f"| {label} | {' | '.join(values)} |")
     return "\n".join(lines) + "\n"
@@ -115,11 +115,11 @@ def main(argv: list[str] | None = None) -> int:
         source = Windows(options.data, PAST, FUTURE, split="test")
         windows = source.draw(options.windows, np.random.default_rng(0)).astype(np.float64)
         truth = windows[:, PAST:]
-        found = {TRUTH: score(lambda _: truth, windows)}
+        scores = {TRUTH: score(lambda _: truth, windows)}
         for name in ("still", *(options.model or ["motion-mlp"])):
             predictor = PredictorPipeline(None if name == "still" else options.weights / name)
-            found[name] = score(lambda past, own=predictor: own.predict(past, FUTURE), windows)
-        table = markdown(found)
+            scores[name] = score(lambda past, own=predictor: own.predict(past, FUTURE), windows)
+        table = markdown(scores)
         if options.table:
             write_text(options.table, table)
         print(table)

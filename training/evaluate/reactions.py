@@ -145,8 +145,8 @@ def long_enough(people: Array) -> Array:
 
 def nearest(bank: Bank, people: Array) -> Array:
     """The reactor (T, 22, 3) of the recorded pair whose actor and first pose lie nearest to these people's."""
-    found = int(bank.answers(people[0], people[1, 0])[0])
-    return bank.reactor(found, people.shape[1], people[1, 0])
+    best = int(bank.answers(people[0], people[1, 0])[0])
+    return bank.reactor(best, people.shape[1], people[1, 0])
 
 
 def zero_velocity(reaction: Reaction) -> Array:
@@ -192,18 +192,18 @@ def readouts(test: Sequence[Reaction], people: Sequence[Array]) -> dict[str, flo
     ``contact_due`` is the percentage of the clips with recorded contact in which these people touch, too. None if no
     clip has a value.
     """
-    recorded, found = (
+    recorded, reacted = (
         [
             summary(Duet.from_positions(np.stack([reaction.people[0], person]), fps=30.0))
             for reaction, person in zip(test, made, strict=True)
         ]
         for made in ([reaction.people[1] for reaction in test], people)
     )
-    for true, one in zip(recorded, found, strict=True):
+    for true, one in zip(recorded, reacted, strict=True):
         one["contact_due"] = 100.0 * (one["contact_seconds"] > 0) if true["contact_seconds"] > 0 else np.nan
     rounded: dict[str, float | None] = {}
     for key, _ in READOUTS:
-        values = [one[key] for one in found if not np.isnan(one[key])]
+        values = [one[key] for one in reacted if not np.isnan(one[key])]
         rounded[key] = round(float(np.mean(values)), 4) if values else None
     return rounded
 
@@ -211,20 +211,20 @@ def readouts(test: Sequence[Reaction], people: Sequence[Array]) -> dict[str, flo
 def table(scores: dict[str, Any]) -> str:
     """Markdown of all scores."""
     lines = []
-    for dataset, found in scores.items():
+    for dataset, readings in scores.items():
         lines += [
-            f"## {DATASETS[dataset]}: {found['train']} training and {found['test']} test clips, "
-            f"{len(found['classes'])} classes",
+            f"## {DATASETS[dataset]}: {readings['train']} training and {readings['test']} test clips, "
+            f"{len(readings['classes'])} classes",
             "",
             f"| Method | Accuracy % | FVD | Diversity %, 0 is best | {' | '.join(head for _, head in READOUTS)} |",
             f"|---|---|---|---{'|---' * len(READOUTS)}|",
         ]
-        for method, values in found["scores"].items():
+        for method, values in readings["scores"].items():
             cells = []
             for name, factor in (("accuracy", 100), ("fvd", 1), ("diversity", 1)):
                 mean, half = interval([factor * value for value in values[name]])
                 cells.append(f"{mean:.1f} ± {half:.1f}")
-            shown = [found["readouts"][method][key] for key, _ in READOUTS]
+            shown = [readings["readouts"][method][key] for key, _ in READOUTS]
             cells += ["–" if value is None else f"{value:.2f}" for value in shown]
             lines.append(f"| {method} | {' | '.join(cells)} |")
         lines.append("")

@@ -68,12 +68,12 @@ def main(argv: Sequence[str] | None = None) -> None:
     parser.add_argument("file", type=Path, help="captions, one a line")
     parser.add_argument("--out", type=Path, help="JSON file for each caption with its acts")
     args = parser.parse_args(argv)
-    found = coverage(sampled(args.file))
+    result = coverage(sampled(args.file))
     if args.out:
-        args.out.write_text(json.dumps(found, indent=1))
-    words = ", ".join(f"{word} {count}" for word, count in list(found["left"].items())[:60])
-    print(f"read whole {found['whole']:.1%}, two parses disagree {found['doubtful']:.1%}, ", end="")
-    print(f"{found['milliseconds']:.0f} ms a caption\nwords left over: {words}")
+        args.out.write_text(json.dumps(result, indent=1))
+    words = ", ".join(f"{word} {count}" for word, count in list(result["left"].items())[:60])
+    print(f"read whole {result['whole']:.1%}, two parses disagree {result['doubtful']:.1%}, ", end="")
+    print(f"{result['milliseconds']:.0f} ms a caption\nwords left over: {words}")
 
 
 if __name__ == "__main__":

@@ -150,9 +150,9 @@ class Trainer(Loop):
         features: dict[str, list[Tensor]] = {"actor": [], "reactor": []}
         steps = []
         for one in every:
-            found = self.model.features(one.actor, one.reactor[:, :-1])
-            features["actor"].append(found[0].flatten(0, 1))
-            features["reactor"].append(found[1].flatten(0, 1))
+            inputs = self.model.features(one.actor, one.reactor[:, :-1])
+            features["actor"].append(inputs[0].flatten(0, 1))
+            features["reactor"].append(inputs[1].flatten(0, 1))
             steps.append(one.reactor.diff(dim=1).flatten(0, 1))
         for name, rows in features.items():
             joined = torch.cat(rows)

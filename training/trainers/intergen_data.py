@@ -223,8 +223,8 @@ class Data:
         Args:
             draw: five numbers uniform in [0, 1): for which are read, two, and for each sentence.
         """
-        found = zip(sentence_lists(row), draw[2:], strict=True)
-        chosen = [sentences[int(u * len(sentences))] if sentences else "" for sentences, u in found]
+        drawn = zip(sentence_lists(row), draw[2:], strict=True)
+        chosen = [sentences[int(u * len(sentences))] if sentences else "" for sentences, u in drawn]
         if draw[0] < self.settings.cond_drop_prob:
             return chosen, [False] * 3
         if not all(chosen):

@@ -57,10 +57,10 @@ class Windows:
         """(count, length, 22, 3) metres: windows at random places, half of them mirrored."""
         starts = np.sort(rng.choice(self.starts, size=count))  # in the file's order, which is faster
         people = rng.integers(2, size=count)
-        found = self.motions[starts[:, None] + np.arange(self.length), people[:, None]]
+        windows = self.motions[starts[:, None] + np.arange(self.length), people[:, None]]
         mirror = rng.random(count) < 0.5
-        found[mirror] = mirrored(found[mirror])
-        return to_last_pose(found, self.past - 1)[0]
+        windows[mirror] = mirrored(windows[mirror])
+        return to_last_pose(windows, self.past - 1)[0]
 
     def batch(self, size: int, seed: tuple[int, ...]) -> Tensor:
         """:meth:`draw` as float32; the same seed gives the same windows."""

@@ -47,7 +47,7 @@ def _mirror(joint: str) -> str:
 
 def examples(rows: list[dict[str, Any]]) -> list[tuple[str, Touch]]:
     """(caption, touch) of every way in which the trainer may show these scenes and their single beats."""
-    found = set()
+    touches = set()
     for row in rows:
         captioned = [(caption, None) for caption in row["captions"]]
         captioned += [(caption, beat) for beat in row.get("beats") or () for caption in beat["captions"]]
@@ -55,18 +55,18 @@ def examples(rows: list[dict[str, Any]]) -> list[tuple[str, Touch]]:
             for draw in (0.0, 0.9):
                 mirror = mirrored(caption, row.get("hand"), draw)
                 touch = touch_of(row, mirror=mirror, beat=beat)
-                found.add((mirror_caption(caption) if mirror else caption, touch))
-    return sorted(found)
+                touches.add((mirror_caption(caption) if mirror else caption, touch))
+    return sorted(touches)
 
 
 @torch.no_grad()
 def conditions(conditioner: TextConditioner, captions: list[str]) -> Tensor:
     """(N, cond_dim) condition vectors of captions."""
-    found = torch.empty(len(captions), conditioner.config.latent_dim)
+    vectors = torch.empty(len(captions), conditioner.config.latent_dim)
     for places, tokens in encoded(captions):
         with mixed_precision("cpu"):
-            found[places] = conditioner(tokens.features.float(), tokens.mask).float()
-    return found
+            vectors[places] = conditioner(tokens.features.float(), tokens.mask).float()
+    return vectors
 
 
 def without_touches(model: CompactInterGen | CompactReGenNet) -> Released:
@@ -92,8 +92,8 @@ def with_touches(model: Network, scenes: Scenes) -> tuple[Network, float]:
     assert reader is not None
 
     generator = torch.Generator().manual_seed(0)
-    found = examples(scenes.split("train"))
-    chosen = [found[i] for i in torch.randperm(len(found), generator=generator)[:MOST].tolist()]
+    touches = examples(scenes.split("train"))
+    chosen = [touches[i] for i in torch.randperm(len(touches), generator=generator)[:MOST].tolist()]
     inputs, labels = _tensors(result, chosen)
     torch.manual_seed(0)
 
@@ -109,8 +109,8 @@ def with_touches(model: Network, scenes: Scenes) -> tuple[Network, float]:
     return result, float((reader(seen).argmax(-1) == wanted).float().mean())
 
 
-def _tensors(model: CompactInterGen | CompactReGenNet, found: list[tuple[str, Touch]]) -> tuple[Tensor, Tensor]:
+def _tensors(model: CompactInterGen | CompactReGenNet, touches: list[tuple[str, Touch]]) -> tuple[Tensor, Tensor]:
     reader = model.touch_reader
     assert reader is not None
-    kept = [(caption, reader.touches.index(t)) for caption, t in found if t in reader.touches]
+    kept = [(caption, reader.touches.index(t)) for caption, t in touches if t in reader.touches]
     return conditions(model.conditioner, [caption for caption, _ in kept]), torch.tensor([label for _, label in kept])

@@ -159,14 +159,14 @@ class Engine:
         Raises:
             InputError: if there is no such method, or its weights are missing or altered.
         """
-        found = methods.method(name)
+        described = methods.method(name)
         with self._lock:
             loading = self._loading.setdefault(name, threading.RLock())
         with loading:  # of this method alone: no model waits for another one's loading
             if name not in self._pipelines:
-                parts = [self.pipeline(needed) for needed in found.needs]
+                parts = [self.pipeline(needed) for needed in described.needs]
                 _take_threads()
-                self._pipelines[name] = found.load(self.weights / (found.weights or name), *parts)
+                self._pipelines[name] = described.load(self.weights / (described.weights or name), *parts)
             return self._pipelines[name]
 
 
@@ -224,9 +224,9 @@ def run_tries(
             if not isinstance(event, Result):
                 yield event if asked == 1 else replace(event, attempt=made, attempts=asked)
                 continue
-            found = judged(one, _finished(one, event))
-            if best is None or found.share > best.share:
-                best, won = found, made
+            attempt = judged(one, _finished(one, event))
+            if best is None or attempt.share > best.share:
+                best, won = attempt, made
     assert best is not None
     yield _told(best, request, None if asked == 1 else {"asked": asked, "made": made, "won": won})
 
@@ -284,8 +284,8 @@ class Judged:
     @property
     def counts(self) -> tuple[int, int]:
         """Acts that are done and that can be judged, over all samples."""
-        found = [row["done"] for rows in self.rows for row in rows if row["done"] is not None]
-        return sum(found), len(found)
+        verdicts = [row["done"] for rows in self.rows for row in rows if row["done"] is not None]
+        return sum(verdicts), len(verdicts)
 
     @property
     def share(self) -> float:
@@ -299,13 +299,13 @@ def judged(request: Any, result: Result) -> Judged:
     plans = _plans(request)
     lengths = lengths_of(result.manifest)
     unread = tuple(dict.fromkeys(words for plan, *_ in plans for words in unread_words(plan)))
-    found = [_judged_sample(plans, duet, lengths) for duet in result.duets] if plans else []
-    rows = tuple(own["checked"] for own in found)
+    judgements = [_judged_sample(plans, duet, lengths) for duet in result.duets] if plans else []
+    rows = tuple(own["checked"] for own in judgements)
     if not any(rows):
         return Judged(result, (), unread)
-    found = [own | ({"unread": list(unread)} if unread else {}) for own in found]
-    duets = tuple(_with(duet, own) for duet, own in zip(result.duets, found, strict=True))
-    return Judged(replace(result, manifest=result.manifest | found[0], duets=duets), rows, unread)
+    judgements = [own | ({"unread": list(unread)} if unread else {}) for own in judgements]
+    duets = tuple(_with(duet, own) for duet, own in zip(result.duets, judgements, strict=True))
+    return Judged(replace(result, manifest=result.manifest | judgements[0], duets=duets), rows, unread)
 
 
 def _with(duet: Duet | Clip, own: Mapping[str, Any]) -> Duet | Clip:

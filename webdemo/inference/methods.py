@@ -45,12 +45,12 @@ def method(name: str, task: Task | None = None) -> Method:
             be used.
     """
     _register_all()
-    found = _registered.get(name)
-    if found is None and name in _failed:
+    known = _registered.get(name)
+    if known is None and name in _failed:
         raise InputError(_failed[name])
-    if found is not None and (task is None or task in found.tasks):
-        return found
-    wrong = f"There is no model {name!r:.40}" if found is None else f"{found.label} does not {task}"
+    if known is not None and (task is None or task in known.tasks):
+        return known
+    wrong = f"There is no model {name!r:.40}" if known is None else f"{known.label} does not {task}"
     raise InputError(f"{wrong}: choose one of {', '.join(m.name for m in methods(task))}.")
 
 
@@ -61,13 +61,13 @@ def automatic(prompt: str, role: str, mode: str = "offline") -> Method:
     answered by the nearest recorded reaction where a lab has recordings of its own, and else by ReGenNet. Frame by
     frame, the first method answers that can.
     """
-    found = methods("react")
+    candidates = methods("react")
     if mode != "offline":
-        return next((m for m in found if mode in m.modes), found[0])
+        return next((m for m in candidates if mode in m.modes), candidates[0])
     if prompt.strip() or role != "a":
-        return found[0]
+        return candidates[0]
     best = method("nearest" if os.environ.get(REACTIONS_VARIABLE) else "regennet")
-    return best if best.installed(WEIGHTS) else found[0]
+    return best if best.installed(WEIGHTS) else candidates[0]
 
 
 def label_of(name: str) -> str:
@@ -93,16 +93,16 @@ def failed() -> dict[str, str]:
     return dict(_failed)
 
 
-def register(found: Method) -> None:
+def register(added: Method) -> None:
     """Adds a method of a lab's own.
 
     Raises:
         InputError: if its name is taken.
     """
     _register_all()
-    if found.name in _registered:
-        raise InputError(f"There is a method named {found.name} already: choose another name.")
-    _registered[found.name] = found
+    if added.name in _registered:
+        raise InputError(f"There is a method named {added.name} already: choose another name.")
+    _registered[added.name] = added
 
 
 def register_settings() -> None:
@@ -133,8 +133,8 @@ def _register_all() -> None:
         if _complete:
             return
         _complete = True
-        for found in BUILT_IN:
-            register(found)
+        for shipped in BUILT_IN:
+            register(shipped)
         register_settings()
 
 
@@ -145,7 +145,7 @@ def takes_class(name: str) -> bool:
 
 def by_class() -> Method:
     """The method that makes two people from a class."""
-    return next(found for found in methods("generate") if "class" in found.takes)
+    return next(each for each in methods("generate") if "class" in each.takes)
 
 
 def installed_classes(weights: Path = WEIGHTS) -> list[str]:

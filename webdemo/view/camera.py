@@ -124,12 +124,12 @@ def cameras(
     pairs = np.stack([reach[:, ::2] + reach[:, 1::2] for reach in reaches])
     least = (pairs / (slopes[::2] + slopes[1::2])).max(axis=2) - np.stack(depths)
     distances = least.max(axis=0).clip(min=_LEAST)
-    found = []
+    chosen = []
     for reach, depth in zip(reaches, depths, strict=True):
         apart = (slopes[::2] - slopes[1::2]) * (distances + depth)[:, None]
         middle = np.column_stack([(reach[:, ::2] - reach[:, 1::2] - apart) / 2, depth])
-        found.append(_smooth(np.column_stack([middle @ axes, distances]), times, around if follow else 0.0))
-    return [[Camera(way[:3], yaw, elevation, float(way[3]), size) for way in ways] for ways in found]
+        chosen.append(_smooth(np.column_stack([middle @ axes, distances]), times, around if follow else 0.0))
+    return [[Camera(way[:3], yaw, elevation, float(way[3]), size) for way in ways] for ways in chosen]
 
 
 def _reach(

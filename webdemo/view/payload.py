@@ -99,16 +99,16 @@ def _things(motion: Duet | Clip) -> dict[str, Any]:
     """The things beside two people, their grips and looks, and what happens in words; nothing for what is not said."""
     if not isinstance(motion, Duet):
         return {}
-    found: dict[str, Any] = {}
+    columns: dict[str, Any] = {}
     if told := str((motion.manifest or {}).get("told") or ""):
-        found["told"] = told
+        columns["told"] = told
     if motion.things:
-        found["things"] = [thing_payload(thing) for thing in motion.things]
+        columns["things"] = [thing_payload(thing) for thing in motion.things]
     if motion.grips:
-        found["grips"] = to_lists(motion.grips)
+        columns["grips"] = to_lists(motion.grips)
     if motion.looks != UNSAID:
-        found["looks"] = list(motion.looks)
-    return found
+        columns["looks"] = list(motion.looks)
+    return columns
 
 
 def build_payload(samples: Sequence[dict[str, Any]], *, skeleton: Any, title: str = "") -> Payload:

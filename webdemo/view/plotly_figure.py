@@ -111,24 +111,24 @@ def _moments(motion: Clip | Duet, fps: float) -> list[int]:
 
 def _tracks(places: Array) -> list[dict[str, Array]]:
     """Where four traces of each person are at one moment; ``places`` is (people, 22, 3)."""
-    found: list[Array] = []
+    tracks: list[Array] = []
     for joints in places:
-        found += [_lines(joints, limb) for limb in LIMBS]
-        found.append(joints[[np.argmax(joints[:, 1])]] + np.array([0.0, _ABOVE_HEAD, 0.0]))
-    return [dict(zip("xyz", track.T, strict=True)) for track in found]
+        tracks += [_lines(joints, limb) for limb in LIMBS]
+        tracks.append(joints[[np.argmax(joints[:, 1])]] + np.array([0.0, _ABOVE_HEAD, 0.0]))
+    return [dict(zip("xyz", track.T, strict=True)) for track in tracks]
 
 
 def _styles(names: tuple[str, ...], colours: Theme) -> list[dict[str, Any]]:
     """How these traces look: three limbs and a name."""
-    found: list[dict[str, Any]] = []
+    styles: list[dict[str, Any]] = []
     for person, name in enumerate(names):
         shade = [_css(colour) for colour in colours.people[person % len(colours.people)]]
         for colour in shade:
             bone, joint = {"color": colour, "width": 7}, {"color": colour, "size": 3}
-            found.append({"mode": "lines+markers", "line": bone, "marker": joint})
+            styles.append({"mode": "lines+markers", "line": bone, "marker": joint})
         text = [html.escape(str(name)[:40])]
-        found.append({"mode": "text", "text": text, "textfont": {"color": shade[0], "size": 15}})
-    return [{**style, "hoverinfo": "skip", "showlegend": False} for style in found]
+        styles.append({"mode": "text", "text": text, "textfont": {"color": shade[0], "size": 15}})
+    return [{**style, "hoverinfo": "skip", "showlegend": False} for style in styles]
 
 
 def _lines(joints: Array, limb: str) -> Array:

@@ -38,12 +38,12 @@ def chosen_frames(motion: Clip | Duet, frames: int | Sequence[int]) -> list[int]
         if not MOMENTS[0] <= frames <= MOMENTS[1]:
             raise InputError(f"A contact sheet has {MOMENTS[0]} to {MOMENTS[1]} moments, not {frames}.")
         return np.unique(np.linspace(0, last, frames).round().astype(int)).tolist()
-    found = [int(frame) for frame in frames]
-    if not MOMENTS[0] <= len(found) <= MOMENTS[1]:
-        raise InputError(f"A contact sheet has {MOMENTS[0]} to {MOMENTS[1]} moments, not {len(found)}.")
-    if any(not 0 <= frame <= last for frame in found):
+    chosen = [int(frame) for frame in frames]
+    if not MOMENTS[0] <= len(chosen) <= MOMENTS[1]:
+        raise InputError(f"A contact sheet has {MOMENTS[0]} to {MOMENTS[1]} moments, not {len(chosen)}.")
+    if any(not 0 <= frame <= last for frame in chosen):
         raise InputError(f"The motion has frames 0 to {last}: choose among them.")
-    return found
+    return chosen
 
 
 def write_sheet(

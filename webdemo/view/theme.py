@@ -71,12 +71,12 @@ class Theme:
 
 
 def _greyer(zones: Worn) -> Worn:
-    found = {}
+    greys = {}
     for zone, colour in zones.items():
         grey = 0.75 * (0.3 * colour[0] + 0.55 * colour[1] + 0.15 * colour[2]) + 0.14
         red, green, blue = (part + 0.72 * (grey - part) for part in colour)
-        found[zone] = (red, green, blue)
-    return found
+        greys[zone] = (red, green, blue)
+    return greys
 
 
 def _coloured(stored: Any) -> Any:
@@ -89,8 +89,10 @@ def _coloured(stored: Any) -> Any:
 
 
 def _theme(stored: Mapping[str, Any]) -> Theme:
-    found = _coloured({**stored, "grid_strong": stored["gridStrong"]}) | {"lamps": Lamps(**_coloured(stored["lamps"]))}
-    return Theme(**{part.name: found[part.name] for part in fields(Theme)})
+    colours = _coloured({**stored, "grid_strong": stored["gridStrong"]}) | {
+        "lamps": Lamps(**_coloured(stored["lamps"]))
+    }
+    return Theme(**{part.name: colours[part.name] for part in fields(Theme)})
 
 
 THEMES = {name: _theme(stored) for name, stored in themes().items()}

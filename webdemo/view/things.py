@@ -49,11 +49,11 @@ def hands_of(motion: Clip | Duet, person: int, frames: Array) -> Array | None:
 
 def shadow_spots(things: Sequence[Thing], frame: float) -> Array:
     """(N, 4) places in the world, and the square metres about each, that shade the floor at a frame."""
-    found = []
+    places = []
     for thing in things:
         spots = thing.mesh.spots()
-        found.append(np.c_[_moved(thing, spots[:, :3], frame), spots[:, 3]])
-    return np.concatenate(found) if found else np.zeros((0, 4))
+        places.append(np.c_[_moved(thing, spots[:, :3], frame), spots[:, 3]])
+    return np.concatenate(places) if places else np.zeros((0, 4))
 
 
 def _moved(thing: Thing, points: Array, frame: float) -> Array:

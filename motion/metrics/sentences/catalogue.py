@@ -80,10 +80,10 @@ class Sentence:
         """The rule's judgement of a motion of SMPL's 22 joints."""
         if isinstance(motion, Duet):
             motion = Motion(motion.positions, motion.fps)
-        found = [self._cast(motion)]
-        if not self.named and not found[0].passed:
-            found.append(self._cast(motion.swapped()))
-        return max(found, key=lambda judgement: judgement.share)
+        judgements = [self._cast(motion)]
+        if not self.named and not judgements[0].passed:
+            judgements.append(self._cast(motion.swapped()))
+        return max(judgements, key=lambda judgement: judgement.share)
 
     def _cast(self, motion: Motion) -> Judgement:
         parts = tuple((rule, check(rule, motion)) for rule in self.rule)
@@ -120,22 +120,22 @@ def read_sentences(path: Path) -> tuple[Sentence, ...]:
             tables = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
             raise InputError(f"{path.name} is not TOML ({error}): see docs/own-model.md.") from None
-        found = _given(tables.get("sentence"), path.name, sealed=tables.get("sealed") is True)
+        sentences = _given(tables.get("sentence"), path.name, sealed=tables.get("sealed") is True)
     elif path.suffix.lower() != ".json":
         known = {sentence.words: sentence for sentence in load_sentences()}
         lines = [line.strip() for line in text.splitlines() if line.strip()]
         rows = [{"words": line} for line in lines if line not in known]
         made = iter(_given(rows, path.name))
-        found = [known.get(line) or next(made) for line in lines]
+        sentences = [known.get(line) or next(made) for line in lines]
     else:
         try:
             rows = json.loads(text)
         except ValueError as error:
             raise InputError(f"{path.name} is not JSON ({error}): see docs/own-model.md.") from None
-        found = _given(rows, path.name)
-    if not found:
+        sentences = _given(rows, path.name)
+    if not sentences:
         raise InputError(f"{path.name} holds no sentences: write one a line.")
-    return tuple(found)
+    return tuple(sentences)
 
 
 def _given(rows: object, name: str, *, sealed: bool = False) -> list[Sentence]:
@@ -211,17 +211,17 @@ def score(sentences: Sequence[Sentence], duets: Sequence[Sequence[Duet]]) -> dic
     other: dict[str, list[int]] = {ALL: [0, 0]}
     rows: list[dict[str, Any]] = []
     for i, (sentence, drawn) in enumerate(zip(sentences, duets, strict=True)):
-        found = [sentence.judge(duet) for duet in drawn]
-        _count(tags, sentence, [judgement.passed for judgement in found])
+        judgements = [sentence.judge(duet) for duet in drawn]
+        _count(tags, sentence, [judgement.passed for judgement in judgements])
         strange = duets[(i + half) % len(sentences)] if half else ()
         _count(other, sentence, [sentence.judge(duet).passed for duet in strange])
-        met = {rule: sum(dict(judgement.parts)[rule] for judgement in found) for rule in sentence.rule}
+        met = {rule: sum(dict(judgement.parts)[rule] for judgement in judgements) for rule in sentence.rule}
         rows.append(
             {
                 "id": sentence.id,
                 "words": sentence.words,
                 "tags": list(sentence.tags),
-                "passed": [judgement.passed for judgement in found],
+                "passed": [judgement.passed for judgement in judgements],
                 "met": met,
             }
         )

@@ -170,13 +170,13 @@ PAUSE = 0.2
 
 def stretches(mask: Mask, fps: float, *, pause: float = PAUSE) -> list[tuple[int, int]]:
     """(first frame, one past the last) of a mask's runs; runs less than ``pause`` seconds apart are one."""
-    found: list[tuple[int, int]] = []
+    spans: list[tuple[int, int]] = []
     for start, stop in runs(np.asarray(mask)):
-        if found and start - found[-1][1] < pause * fps:
-            found[-1] = (found[-1][0], stop)
+        if spans and start - spans[-1][1] < pause * fps:
+            spans[-1] = (spans[-1][0], stop)
         else:
-            found.append((start, stop))
-    return found
+            spans.append((start, stop))
+    return spans
 
 
 def keep(mask: Mask, fps: float, holds: Callable[[int, int], bool], *, pause: float = PAUSE) -> Mask:
@@ -225,7 +225,7 @@ def without(m: Motion, mask: Mask) -> Mask:
 @predicate
 def begins(m: Motion, mask: Mask, seconds: float = 0.3) -> Mask:
     """The first ``seconds`` of every stretch: a state that is entered, as a beat of its own."""
-    found = np.zeros(m.frames, dtype=bool)
+    starts = np.zeros(m.frames, dtype=bool)
     for i, j in stretches(mask, m.fps):
-        found[i : min(j, i + round(seconds * m.fps))] = True
-    return found
+        starts[i : min(j, i + round(seconds * m.fps))] = True
+    return starts

@@ -87,14 +87,14 @@ def then(m: Motion, *masks: Mask) -> bool:
     """The beats come in this order: the middle of each is no more than 0.3 s before the end of the last."""
     after = -np.inf
     for mask in masks:
-        found = [
+        spans = [
             (i, j)
             for i, j in stretches(mask, m.fps)
             if j - i >= SHORTEST * m.fps and (i + j) / 2 >= after - SLACK * m.fps
         ]
-        if not found:
+        if not spans:
             return False
-        after = min(j for _, j in found)
+        after = min(j for _, j in spans)
     return True
 
 

@@ -73,12 +73,12 @@ def steps_aside(m: Motion, who: int, way: str = "any", metres: float = 0.25) -> 
     left = np.sum(m.velocities[who] * m.left(who), axis=-1)
     ahead = np.abs(np.sum(m.velocities[who] * m.forward[who], axis=-1))
     rates = {"left": left, "right": -left}
-    found = [
+    masks = [
         _gained(m, np.where(rate > ahead, rate, 0.0), metres, 0.12)
         for name, rate in rates.items()
         if way in ("any", name)
     ]
-    return np.logical_or.reduce(found or [np.zeros(m.frames, dtype=bool)])
+    return np.logical_or.reduce(masks or [np.zeros(m.frames, dtype=bool)])
 
 
 @predicate
@@ -202,12 +202,12 @@ _TURNS = 20.0
 @predicate
 def turns_way(m: Motion, who: int, way: str, degrees: float = 60.0) -> Mask:
     """Turns by ``degrees`` or more to the "left" or "right"; to either for every other way."""
-    found = np.zeros(m.frames, dtype=bool)
+    mask = np.zeros(m.frames, dtype=bool)
     for sign in {"left": (1.0,), "right": (-1.0,)}.get(way, (1.0, -1.0)):
         heading = sign * m.headings[who]
         turning = np.gradient(heading) * m.fps > _TURNS
-        found |= keep(turning, m.fps, lambda i, j: heading[j - 1] - heading[i] >= degrees, pause=0.4)  # noqa: B023
-    return found
+        mask |= keep(turning, m.fps, lambda i, j: heading[j - 1] - heading[i] >= degrees, pause=0.4)  # noqa: B023
+    return mask
 
 
 @predicate

@@ -76,11 +76,11 @@ def hops(m: Motion, who: int, rise: float = 0.05) -> Mask:
     feet = np.minimum(m.pair(who, "foot")[..., 1].min(axis=0), m.pair(who, "ankle")[..., 1].min(axis=0) - 0.06)
     up = feet > np.percentile(feet, 10) + 0.03
     bobs = scipy.signal.find_peaks(m.joint(who, "pelvis")[:, 1], prominence=rise)[0]
-    found = np.zeros(m.frames, dtype=bool)
+    mask = np.zeros(m.frames, dtype=bool)
     reach = round(0.2 * m.fps)
     for peak in bobs:
-        found[max(0, peak - reach) : peak + reach + 1] = up[max(0, peak - reach) : peak + reach + 1].any()
-    return found
+        mask[max(0, peak - reach) : peak + reach + 1] = up[max(0, peak - reach) : peak + reach + 1].any()
+    return mask
 
 
 @predicate
@@ -203,14 +203,14 @@ def _held_before_other(m: Motion, who: int, hand: Mask) -> Mask:
 def beckons(m: Motion, who: int) -> Mask:
     """A hand above the waist goes to and fro twice or more, by 6 cm or more, in a wave or a beckoning."""
     over_waist = m.pair(who, "wrist")[..., 1] > m.joint(who, "pelvis")[:, 1] + 0.15
-    found = np.zeros(m.frames, dtype=bool)
+    mask = np.zeros(m.frames, dtype=bool)
     for path, ready in zip(m.pair(who, "wrist") - m.pair(who, "shoulder"), over_waist, strict=True):
 
         def strokes(i: int, j: int, path: Array = path) -> bool:
             return max(len(scipy.signal.find_peaks(axis, prominence=0.06)[0]) for axis in path[i:j].T) >= 2
 
-        found |= keep(ready, m.fps, strokes)
-    return found
+        mask |= keep(ready, m.fps, strokes)
+    return mask
 
 
 @predicate

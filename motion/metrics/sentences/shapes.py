@@ -196,10 +196,10 @@ def _strokes(path: Array, least: float) -> int:
 @predicate
 def nods(m: Motion, who: int, degrees: float = 6.0) -> Mask:
     """The head goes down and up again, by ``degrees`` or more against the trunk, while the pelvis stays up."""
-    found = np.zeros(m.frames, dtype=bool)
+    mask = np.zeros(m.frames, dtype=bool)
     for peak in scipy.signal.find_peaks(_pitch(m, who), prominence=degrees)[0]:
-        found[max(0, peak - round(0.15 * m.fps)) : peak + round(0.15 * m.fps) + 1] = True
-    return found & (m.height(who) > 0.8)
+        mask[max(0, peak - round(0.15 * m.fps)) : peak + round(0.15 * m.fps) + 1] = True
+    return mask & (m.height(who) > 0.8)
 
 
 @predicate
@@ -228,7 +228,7 @@ def beats(m: Motion, who: int, side: str = "any", strokes: int = 3, metres: floa
         metres: of each stroke, against the shoulder.
         over: least height of the wrist over the shoulder, metres.
     """
-    found = []
+    masks = []
     for path, lift in zip(m.pair(who, "wrist") - m.pair(who, "shoulder"), _lift(m, who), strict=True):
         busy = np.zeros(m.frames, dtype=bool)
         for axis in path.T:
@@ -238,8 +238,8 @@ def beats(m: Motion, who: int, side: str = "any", strokes: int = 3, metres: floa
             for i, j in zip(peaks, peaks[strokes - 1 :], strict=False):
                 if j - i <= 2.0 * m.fps and np.all(lift[i : j + 1] > over):
                     busy[i : j + 1] = True
-        found.append(busy)
-    return _of_side(np.stack(found), side)
+        masks.append(busy)
+    return _of_side(np.stack(masks), side)
 
 
 @predicate
@@ -247,13 +247,13 @@ def palms_strike(m: Motion, who: int, metres: float = 0.2, opens: float = 0.05) 
     """The palms of one person strike each other: within ``metres``, and ``opens`` more apart just before and after."""
     left, right = m.palms[who]
     gap = np.linalg.norm(left - right, axis=-1)
-    found = np.zeros(m.frames, dtype=bool)
+    mask = np.zeros(m.frames, dtype=bool)
     for peak in scipy.signal.find_peaks(-gap, prominence=opens)[0]:
         reach = round(0.5 * m.fps)
         around = gap[max(0, peak - reach) : peak], gap[peak + 1 : peak + reach + 1]
         if gap[peak] < metres and all(part.size and part.max() > gap[peak] + opens for part in around):
-            found[max(0, peak - 1) : peak + 2] = True
-    return found
+            mask[max(0, peak - 1) : peak + 2] = True
+    return mask
 
 
 @predicate

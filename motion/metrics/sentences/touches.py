@@ -134,10 +134,10 @@ def hugs(m: Motion) -> Mask:
 @predicate
 def arms_linked(m: Motion, gap: float = 0.2) -> Mask:
     """An elbow of one is at an elbow or a hand of the other, or their hands meet."""
-    found = hands_meet(m)
+    linked = hands_meet(m)
     for who in (0, 1):
-        found = found | (to_joints(m, m.pair(who, "elbow"), 1 - who, "arm").min(axis=0) < gap)
-    return found
+        linked = linked | (to_joints(m, m.pair(who, "elbow"), 1 - who, "arm").min(axis=0) < gap)
+    return linked
 
 
 @predicate
@@ -214,8 +214,8 @@ def alike(m: Motion, mirrored: bool = False, lag: float = 0.0, least: float = 0.
 def copies(m: Motion, who: int, least: float = 0.55) -> Mask:
     """Moves as the other did 0.4 to 2 s before, on the same side or mirrored."""
     sign = 1.0 if who == 1 else -1.0
-    found = np.zeros(m.frames, dtype=bool)
+    mask = np.zeros(m.frames, dtype=bool)
     for lag in np.arange(0.4, 2.01, 0.2):
         for mirrored in (False, True):
-            found |= alike(m, mirrored, sign * lag, least)
-    return found
+            mask |= alike(m, mirrored, sign * lag, least)
+    return mask

@@ -138,5 +138,7 @@ def test_mdms_results_are_read_turned_and_never_unpickled():
     np.testing.assert_allclose(clip.positions, A, atol=1e-6)
     buffer = io.BytesIO()
     np.save(buffer, np.array({"motion": _Bomb()}, dtype=object), allow_pickle=True)
-    with pytest.raises(InputError, match=r'`numpy\.save\("motion\.npy", d\["motion"\]\[0\]\.transpose\(2, 0, 1\)\)`'):
+    with pytest.raises(
+        InputError, match=r'`numpy\.save\("motion\.npy", results\["motion"\]\[0\]\.transpose\(2, 0, 1\)\)`'
+    ):
         formats.read(buffer.getvalue(), name="results.npy")

@@ -299,10 +299,10 @@ class Play:
             window = slice(asked.start, min(asked.stop, frames))
             if window.stop - window.start < 8:
                 continue
-            *changed, found = effect(rng, bodies[i][window], bodies[1 - i][window])
+            *changed, events = effect(rng, bodies[i][window], bodies[1 - i][window])
             for k, part in zip((i, 1 - i), changed, strict=True):
                 bodies[k][window] = part
-            for *joints, first, last in found:
+            for *joints, first, last in events:
                 first, last = first + window.start, min(last + window.start, most - 1, frames - 1)
                 if first <= last:
                     touches.append({"a": joints[i], "b": joints[1 - i], "start": int(first), "end": int(last)})

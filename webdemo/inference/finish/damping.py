@@ -229,8 +229,8 @@ def shares(threshold: float, timesteps: Sequence[int]) -> dict[int, float]:
         timesteps: of the sampler, largest first.
     """
     limit = threshold * TRAIN_TIMESTEPS
-    found = {t: min(max((limit - below) / (t - below), 0.0), 1.0) for t, below in pairwise(timesteps)}
-    return found | {timesteps[-1]: 1 - (1 - threshold) ** 2}
+    strengths = {t: min(max((limit - below) / (t - below), 0.0), 1.0) for t, below in pairwise(timesteps)}
+    return strengths | {timesteps[-1]: 1 - (1 - threshold) ** 2}
 
 
 class Damping:

@@ -57,8 +57,8 @@ def joined(
     away = np.abs(np.arange(len(wanted))[:, None] - frames).min(1)
     stays = np.zeros(len(wanted), dtype=bool) if held is None else held
     free = np.flatnonzero((away > 0) & (away <= reach) & ~stays)
-    found = _turned(wanted, free, away[free], reach=reach, slack=slack)
-    return plant_feet(found, foot_contacts(found, FPS), held=stays | (away == 0))
+    turned = _turned(wanted, free, away[free], reach=reach, slack=slack)
+    return plant_feet(turned, foot_contacts(turned, FPS), held=stays | (away == 0))
 
 
 def passing(positions: Array, frames: Frames, given: Array, held: NDArray[np.bool_]) -> Array:
@@ -83,13 +83,13 @@ def closed(positions: Array, fixed: Frames) -> Array:
     time = np.arange(total)
     away = np.abs(time + 0.5 - middle) + 0.5  # 1 at the first frame and the last, which lie in the middle
     moves = ~np.isin((time - middle) % total, fixed)
-    found: Array = np.roll(np.asarray(positions, dtype=np.float64), middle, axis=0)
+    loop: Array = np.roll(np.asarray(positions, dtype=np.float64), middle, axis=0)
     for reach in (REACH, *_AGAIN):
         free = np.flatnonzero((away <= min(reach, middle - 2)) & moves)
-        found = _turned(found, free, away[free], closes=middle, reach=reach)
-        stand = foot_contacts(found, FPS) & (reach == REACH)  # later feet are only raised to the floor
-        found = plant_feet(found, stand, held=~np.isin(time, free))
-    return np.roll(found, -middle, axis=0)
+        loop = _turned(loop, free, away[free], closes=middle, reach=reach)
+        stand = foot_contacts(loop, FPS) & (reach == REACH)  # later feet are only raised to the floor
+        loop = plant_feet(loop, stand, held=~np.isin(time, free))
+    return np.roll(loop, -middle, axis=0)
 
 
 def _turned(
@@ -108,12 +108,12 @@ def _turned(
     change = rotation_matrices(smooth.reshape(-1, *turns.shape[1:])) @ np.swapaxes(
         rotation_matrices(turns[free]), -1, -2
     )
-    found, old = positions.copy(), positions[free]
-    found[free, 0] = _smoothed(positions[:, 0], free, away, closes=closes, reach=reach, slack=slack)[free]
+    turned, old = positions.copy(), positions[free]
+    turned[free, 0] = _smoothed(positions[:, 0], free, away, closes=closes, reach=reach, slack=slack)[free]
     for parent, joint in SMPL22.bones:
         bone = (change[:, parent] @ (old[:, joint] - old[:, parent])[..., None])[..., 0]
-        found[free, joint] = found[free, parent] + bone
-    return found
+        turned[free, joint] = turned[free, parent] + bone
+    return turned
 
 
 def _smoothed(
@@ -150,8 +150,8 @@ def _smoothed(
     cost = np.concatenate(costs)
     moving, weights = cost[:, inside], slack ** (1 - away / (reach + 1))
     rest = cost @ near - moving @ near[inside]
-    found = values.copy()
-    found[free] = np.linalg.solve(
+    smooth = values.copy()
+    smooth[free] = np.linalg.solve(
         moving.T @ moving + np.diag(weights), weights[:, None] * values[free] - moving.T @ rest
     )
-    return found
+    return smooth

@@ -37,7 +37,7 @@ def class_method(entry: Entry) -> Method:
     return method_of_class(find_class(entry.pipeline, entry.folder), name=entry.name, label=entry.label)
 
 
-def method_of_class(found: Any, *, name: str = "", label: str = "") -> Method:
+def method_of_class(pipeline: Any, *, name: str = "", label: str = "") -> Method:
     """The method of a class with the :class:`~webdemo.inference.method.Pipeline` protocol.
 
     The class may say more in attributes: ``label``, ``summary``, ``tasks``, ``takes``, ``seconds``, ``defaults``,
@@ -46,27 +46,27 @@ def method_of_class(found: Any, *, name: str = "", label: str = "") -> Method:
     Raises:
         InputError: if it lacks ``run``, or an attribute has a value that nothing can be done with.
     """
-    if not isinstance(found, type) or not callable(getattr(found, "run", None)):
+    if not isinstance(pipeline, type) or not callable(getattr(pipeline, "run", None)):
         raise InputError("it is not a class with a method `run(request, cancel, timer)`.")
-    name = name or str(getattr(found, "name", "") or found.__name__.lower())
-    tasks = _texts(found, "tasks", ("generate",), TASKS)
+    name = name or str(getattr(pipeline, "name", "") or pipeline.__name__.lower())
+    tasks = _texts(pipeline, "tasks", ("generate",), TASKS)
     assumed = {"generate": ("words",), "react": ("actor",), "predict": ("past",)}
-    takes = _texts(found, "takes", tuple(t for task in tasks for t in assumed[task]), INPUTS)
-    seconds = getattr(found, "seconds", SECONDS)
+    takes = _texts(pipeline, "takes", tuple(t for task in tasks for t in assumed[task]), INPUTS)
+    seconds = getattr(pipeline, "seconds", SECONDS)
     if not (isinstance(seconds, tuple | list) and len(seconds) == 2 and 0 < seconds[0] <= seconds[1] <= 60):
         raise InputError("its `seconds` must be the shortest and the longest motion, such as (1.0, 10.0).")
     return Method(
         name=name,
-        label=label or str(getattr(found, "label", name)),
-        summary=str(getattr(found, "summary", "A model of this lab's own.")),
+        label=label or str(getattr(pipeline, "label", name)),
+        summary=str(getattr(pipeline, "summary", "A model of this lab's own.")),
         tasks=tasks,  # type: ignore[arg-type]
         takes=frozenset(takes),  # type: ignore[arg-type]
         seconds=(float(seconds[0]), float(seconds[1])),
-        modes=dict(getattr(found, "modes", {})),
-        defaults=dict(getattr(found, "defaults", {})),
-        fixed=dict(getattr(found, "fixed", {})),
-        samplers=tuple(getattr(found, "samplers", ("ddim", "dpm++"))),
-        load=partial(_load, found, name),
+        modes=dict(getattr(pipeline, "modes", {})),
+        defaults=dict(getattr(pipeline, "defaults", {})),
+        fixed=dict(getattr(pipeline, "fixed", {})),
+        samplers=tuple(getattr(pipeline, "samplers", ("ddim", "dpm++"))),
+        load=partial(_load, pipeline, name),
     )
 
 
@@ -86,10 +86,10 @@ def find_class(place: str, folder: Path) -> Any:
     except (Exception, SystemExit) as error:
         log.warning("%s cannot be imported.", module, exc_info=True)
         raise InputError(f"importing {module} raised {_named(error)}.") from error
-    found = getattr(loaded, name, None)
-    if found is None:
+    pipeline = getattr(loaded, name, None)
+    if pipeline is None:
         raise InputError(f"{module} has no class {name}.")
-    return found
+    return pipeline
 
 
 def _from_file(path: Path) -> Any:
@@ -109,8 +109,8 @@ def _from_file(path: Path) -> Any:
     return module
 
 
-def _texts(found: Any, attribute: str, otherwise: tuple[str, ...], known: tuple[str, ...]) -> tuple[str, ...]:
-    value = getattr(found, attribute, otherwise)
+def _texts(pipeline: Any, attribute: str, otherwise: tuple[str, ...], known: tuple[str, ...]) -> tuple[str, ...]:
+    value = getattr(pipeline, attribute, otherwise)
     if isinstance(value, str) or not value or not set(value) <= set(known):
         raise InputError(f"its `{attribute}` must be some of {', '.join(known)}, not {value!r:.60}.")
     return tuple(value)
@@ -122,10 +122,10 @@ def _named(error: BaseException) -> str:
     return _FOLDERS.sub("", text)[:300].rstrip(".")
 
 
-def _load(found: Any, name: str, folder: Path) -> Pipeline:
+def _load(pipeline: Any, name: str, folder: Path) -> Pipeline:
     """Makes the pipeline; ``folder`` is that of shipped weights, which it does not get."""
     try:
-        return Fenced(found(), name)
+        return Fenced(pipeline(), name)
     except InputError:
         raise
     except (Exception, SystemExit) as error:

@@ -87,17 +87,17 @@ class Entry:
 
 def read_entries() -> tuple[dict[str, Entry], dict[str, str]]:
     """All tables: those that can be used by name, and one sentence for each of the others."""
-    found, failed = {}, {}
+    entries, failed = {}, {}
     try:
         tables, folder, where = _tables()
     except InputError as error:
         return {}, {SETTINGS_FILE: str(error)}
     for name, table in tables.items():
         try:
-            found[name] = _entry(name, table, folder)
+            entries[name] = _entry(name, table, folder)
         except InputError as error:
             failed[name] = f"The model {name} in {where} cannot be used: {error}"
-    return found, failed
+    return entries, failed
 
 
 def _tables() -> tuple[Mapping[str, Any], Path, str]:

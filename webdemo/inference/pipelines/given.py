@@ -166,11 +166,11 @@ class Directed(Scene):
     @property
     def shares(self) -> Tensor:
         """See :attr:`models.known.Hold.shares`; over all steps."""
-        found = torch.zeros(self.frames)
+        total = torch.zeros(self.frames)
         for hold, weight in ((self.given, 1 - self.strictness), (self.poses, self.strictness)):
             if isinstance(hold, Hold):
-                found = found + weight * hold.shares[: self.frames]
-        return found
+                total = total + weight * hold.shares[: self.frames]
+        return total
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """As :meth:`Scene.duet`; what is given is met exactly, and what was made leads there smoothly."""

@@ -62,12 +62,12 @@ class Bank:
 
         Put where the first pose stands, every joint is moved by as much as it moved from its own first pose.
         """
-        found = self.pairs[number][1]
-        moments = np.linspace(0, len(found) - 1, frames)
-        lower = np.minimum(moments.astype(int), len(found) - 1)
-        upper = np.minimum(lower + 1, len(found) - 1)
+        positions = self.pairs[number][1]
+        moments = np.linspace(0, len(positions) - 1, frames)
+        lower = np.minimum(moments.astype(int), len(positions) - 1)
+        upper = np.minimum(lower + 1, len(positions) - 1)
         share = (moments - lower)[:, None, None]
-        stretched = (1 - share) * found[lower] + share * found[upper]
+        stretched = (1 - share) * positions[lower] + share * positions[upper]
         return stretched if first_pose is None else first_pose + stretched - stretched[:1]
 
 
@@ -141,8 +141,8 @@ class NearestPipeline:
         for first, last in itertools.pairwise(edges):
             here = Placement.of(actor.cut(int(first), int(last)), "a")
             begins = None if pose is None else here.to_network(pose)
-            found = self.bank.answers(here.to_network(actor.positions[first:last]), begins)
-            number = int(found[min(sample if first == 0 else 0, len(found) - 1)])
+            ranked = self.bank.answers(here.to_network(actor.positions[first:last]), begins)
+            number = int(ranked[min(sample if first == 0 else 0, len(ranked) - 1)])
             part = here.to_world(self.bank.reactor(number, int(last - first) + 1, begins))
             made.append(part[:-1])
             pose = part[-1]

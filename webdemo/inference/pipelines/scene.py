@@ -222,9 +222,9 @@ def _close(request: SceneRequest, scene: Array) -> None:
 
 
 def _notes(request: SceneRequest) -> Iterator[str]:
-    if len(request.paths) == 2 and (found := meeting(*request.paths)) is not None:
+    if len(request.paths) == 2 and (where := meeting(*request.paths)) is not None:
         yield (
-            f"The two paths come within {100 * found[1]:.0f} cm of each other at {found[0]:.1f} s: move one of them, "
+            f"The two paths come within {100 * where[1]:.0f} cm of each other at {where[0]:.1f} s: move one of them, "
             "or one of their times, unless they are meant to touch."
         )
 
@@ -318,17 +318,17 @@ class Setting:
         """A hash of all that the window is made from: the request's settings, the words, the network, what is given."""
         settings = {**request.sampling, "samples": 1, "tries": 1, "seed": seed}
         told = [digest, words, settings, self.plan.alone, self.frames, self.window.past, self.strictness]
-        found = hashlib.sha256(json.dumps(told).encode())
+        sha256 = hashlib.sha256(json.dumps(told).encode())
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places
             headings = None if isinstance(part, KnownFrames) else part.headings
             joints = [*part.joints, part.kept, part.soft, part.free] if isinstance(part, KnownFrames) else []
-            found.update(repr((type(part).__name__, part.person, list(part.frames), joints)).encode())
+            sha256.update(repr((type(part).__name__, part.person, list(part.frames), joints)).encode())
             for array in (values, headings):
-                found.update(b"-" if array is None else np.ascontiguousarray(array).tobytes())
+                sha256.update(b"-" if array is None else np.ascontiguousarray(array).tobytes())
         for array in (self.placement.turn, self.placement.origin, self.placement.goal):
-            found.update(np.ascontiguousarray(array).tobytes())
-        return found.hexdigest()
+            sha256.update(np.ascontiguousarray(array).tobytes())
+        return sha256.hexdigest()
 
 
 def _plan(request: SceneRequest, window: Window, scene: Array, place: tuple[float, float, float]) -> WindowPlan:

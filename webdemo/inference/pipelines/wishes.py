@@ -80,7 +80,7 @@ def wishes(request: SceneRequest, window: Window, scene: Array, placement: Place
 
 def _fixed(request: SceneRequest, window: Window, scene: Array, person: int) -> list[Fixed]:
     """The fixed places of a person in and around a window, in order."""
-    found = [
+    fixed = [
         Fixed(frame, np.asarray(pose.positions)[0, [0, 2]])
         for pose in request.poses
         if pose.person == ROLES[person] and window.start <= (frame := round(pose.seconds * FPS)) < window.stop
@@ -89,10 +89,10 @@ def _fixed(request: SceneRequest, window: Window, scene: Array, person: int) -> 
     if window.start:
         last = roots[max(window.start - 2, 0) : window.start]
         speed = float(np.linalg.norm(last[-1] - last[0])) * FPS
-        found.append(Fixed(window.start - 1, last[-1], speed))
+        fixed.append(Fixed(window.start - 1, last[-1], speed))
     if window.after:
-        found.append(Fixed(window.stop, roots[0 if request.loop else window.stop]))
-    return sorted(found, key=lambda each: each.frame)
+        fixed.append(Fixed(window.stop, roots[0 if request.loop else window.stop]))
+    return sorted(fixed, key=lambda each: each.frame)
 
 
 def _check_speeds(role: str, fixed: list[Fixed]) -> None:
@@ -160,7 +160,7 @@ def _chased(wanted: Array, begins: Fixed, gap: int, frames: int) -> tuple[Array,
         gap: at least 1.
         frames: over which they may catch up.
     """
-    found, here, speed = wanted.copy(), begins.place, begins.speed
+    chased, here, speed = wanted.copy(), begins.place, begins.speed
     own = np.linalg.norm(np.diff(wanted, axis=0, prepend=wanted[:1]), axis=1) * FPS
     for i in range(min(frames + 1, len(wanted))):
         since = gap if i == 0 else 1
@@ -168,10 +168,10 @@ def _chased(wanted: Array, begins: Fixed, gap: int, frames: int) -> tuple[Array,
         reach = min(speed + ACCELERATION * since / FPS, most) * since / FPS
         line = wanted[i] - here
         way = float(np.linalg.norm(line))
-        found[i] = wanted[i] if way <= reach else here + reach / way * line
-        speed = float(np.linalg.norm(found[i] - here)) * FPS / since
-        here = found[i]
-    return found, speed
+        chased[i] = wanted[i] if way <= reach else here + reach / way * line
+        speed = float(np.linalg.norm(chased[i] - here)) * FPS / since
+        here = chased[i]
+    return chased, speed
 
 
 def _note(path: FloorPath, before: Fixed | None, line: Array, behind: Array, low: int) -> list[str]:
@@ -188,6 +188,6 @@ def _note(path: FloorPath, before: Fixed | None, line: Array, behind: Array, low
 
 def _on_path(path: FloorPath, frame: int) -> tuple[float, float]:
     first, last = ((path.points[i].seconds or 0.0) for i in (0, -1))
-    found = path.place(min(max(frame / FPS, first), last))
-    assert found is not None
-    return found
+    place = path.place(min(max(frame / FPS, first), last))
+    assert place is not None
+    return place

@@ -178,11 +178,11 @@ def check_pose(pose: Any, what: str) -> Array:
     Raises:
         InputError: one sentence that says what is wrong and what to do.
     """
-    found = np.asarray(pose, dtype=np.float64)
-    if found.shape != (SMPL22.num_joints, 3) or not np.isfinite(found).all():
+    joints = np.asarray(pose, dtype=np.float64)
+    if joints.shape != (SMPL22.num_joints, 3) or not np.isfinite(joints).all():
         raise InputError(f"{what} needs the positions of SMPL's 22 joints as finite numbers, in metres.")
-    check_actor(Clip(np.repeat(found[None], 30, axis=0), FPS), (0.0, 2.0))
-    return found
+    check_actor(Clip(np.repeat(joints[None], 30, axis=0), FPS), (0.0, 2.0))
+    return joints
 
 
 def check_length(clip: Clip, seconds: tuple[float, float]) -> None:

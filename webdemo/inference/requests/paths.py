@@ -150,15 +150,15 @@ def meeting(one: FloorPath, other: FloorPath) -> tuple[float, float] | None:
     """(seconds, metres) at which the two people's timed paths come too near each other; None if they do not."""
     first = max(path.points[0].seconds or 0.0 for path in (one, other))
     last = min(path.points[-1].seconds or 0.0 for path in (one, other))
-    found: tuple[float, float] | None = None
+    closest: tuple[float, float] | None = None
     for seconds in np.arange(first, last + 1e-6, 0.1):
         places = one.place(seconds), other.place(seconds)
         if places[0] is None or places[1] is None:
             continue
         gap = math.dist(places[0], places[1])
-        if gap < NEAR and (found is None or gap < found[1]):
-            found = (float(seconds), gap)
-    return found
+        if gap < NEAR and (closest is None or gap < closest[1]):
+            closest = (float(seconds), gap)
+    return closest
 
 
 def path_of(values: Mapping[str, Any]) -> FloorPath:

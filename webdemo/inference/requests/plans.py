@@ -194,8 +194,8 @@ class KeptPlan:
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON."""
-        found: dict[str, Any] = _JSON.dump_python(self, mode="json")
-        return found
+        row: dict[str, Any] = _JSON.dump_python(self, mode="json")
+        return row
 
     @classmethod
     def from_dict(cls, values: Any) -> KeptPlan:

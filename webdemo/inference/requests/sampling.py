@@ -293,10 +293,10 @@ def _plain(value: float) -> str:
 
 def whole(name: str, value: Any, low: int, high: int) -> int:
     """As :func:`number`, for a whole one."""
-    found = number(name, value, low, high)
-    if found != int(found):
+    given = number(name, value, low, high)
+    if given != int(given):
         raise InputError(f"{name} must be a whole number from {_plain(low)} to {_plain(high)}, not {value:g}.")
-    return int(found)
+    return int(given)
 
 
 def prompt_of(value: Any, *, needed: bool) -> str:

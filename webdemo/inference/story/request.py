@@ -219,11 +219,11 @@ class SceneRequest(SamplingRequest):
     @cached_property
     def scores(self) -> tuple[Score, ...]:
         """The score of each beat, in the take of its seed."""
-        found, known = [], lexicon()
+        scores, known = [], lexicon()
         for beat, plan in zip(self.beats, self.plans, strict=True):
             take = Take.of(self.seed if beat.seed is None else beat.seed)
-            found.append(take.of_acts(beat.acts or plan.acts, known))
-        return scores_of(found)
+            scores.append(take.of_acts(beat.acts or plan.acts, known))
+        return scores_of(scores)
 
     @property
     def num_frames(self) -> int:

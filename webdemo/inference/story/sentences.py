@@ -59,14 +59,14 @@ def split_sentence(text: str, go_on: Callable[[], None] = lambda: None) -> tuple
     if len(text) > MOST_WORDS:
         raise InputError(f"The story has {len(text):,} characters: shorten it to {MOST_WORDS:,}.")
     text = " ".join(text.split())
-    found: list[Beat] = []
+    beats: list[Beat] = []
     for stretch in _stretches(text):
         go_on()
-        found += _beats_in(stretch)
-        if len(found) > MOST_BEATS:
+        beats += _beats_in(stretch)
+        if len(beats) > MOST_BEATS:
             raise InputError(f"The story has more than {MOST_BEATS} beats: keep to {MOST_BEATS} or fewer.")
-    if len(found) > 1:
-        return tuple(found)
+    if len(beats) > 1:
+        return tuple(beats)
     if len(text) > LONGEST_READ:
         raise InputError(f"Nobody does anything in “{text[:40]} …”: say who does what.")
     return (Beat(text),) if text else ()
@@ -130,29 +130,29 @@ def beats_of(plan: Plan, *, own_words: bool = True) -> tuple[Beat, ...]:
         own_words: a beat keeps the sentences of the text that tell it; otherwise its words are its acts' captions.
     """
     known = lexicon()
-    found: list[list[list[Act]]] = []
+    beats: list[list[list[Act]]] = []
     for group in plan.beats():
-        if found and (_goes_on(found[-1], group) or _same_beat(found[-1][-1], group, known, plan.sentence)):
-            found[-1].append(group)
+        if beats and (_goes_on(beats[-1], group) or _same_beat(beats[-1][-1], group, known, plan.sentence)):
+            beats[-1].append(group)
         else:
-            found.append([group])
-    if len(found) > 1 and not any(act.happens for group in found[0] for act in group):
-        found[:2] = [found[0] + found[1]]
-    acts = [[act for group in groups for act in group] for groups in found]
+            beats.append([group])
+    if len(beats) > 1 and not any(act.happens for group in beats[0] for act in group):
+        beats[:2] = [beats[0] + beats[1]]
+    acts = [[act for group in groups for act in group] for groups in beats]
     own = _own_sentences(plan, acts) if own_words else {}
     return tuple(
         Beat(own.get(i, words), acts=tuple(act for group in groups for act in group))
-        for i, groups in enumerate(found)
+        for i, groups in enumerate(beats)
         if (words := sentence(groups, known))
     )
 
 
-def _own_sentences(plan: Plan, found: Sequence[Sequence[Act]]) -> dict[int, str]:
+def _own_sentences(plan: Plan, groups: Sequence[Sequence[Act]]) -> dict[int, str]:
     """The whole sentences of the text that tell a beat's acts and no other's, by the number of the beat."""
     if any(act.words is None for act in plan.acts):  # of a plan that somebody edited
         return {}
     told = [
-        (part, {i for i, acts in enumerate(found) if _tells(acts, start, stop)})
+        (part, {i for i, acts in enumerate(groups) if _tells(acts, start, stop)})
         for part, start, stop in _sentences(plan.sentence)
     ]
     shared = {i for _, within in told if len(within) > 1 for i in within}
@@ -162,7 +162,7 @@ def _own_sentences(plan: Plan, found: Sequence[Sequence[Act]]) -> dict[int, str]
             (i,) = within
             part = _without_then(part)
             own[i] = f"{own[i]} {part}" if i in own else part
-    done = {i for i, acts in enumerate(found) if all(act.happens for act in acts)}  # a network hears no "not"
+    done = {i for i, acts in enumerate(groups) if all(act.happens for act in acts)}  # a network hears no "not"
     return {i: words for i, words in own.items() if i in done and len(words) <= MAX_PROMPT}
 
 

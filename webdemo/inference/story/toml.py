@@ -100,29 +100,29 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
         raise InputError(f"The story has {len(text):,} characters: shorten it to {MOST_CHARACTERS:,}.")
     _check_words(text)
     try:
-        found = tomllib.loads(text)
+        tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"The story is no valid TOML: {_sentence(error)}") from None
     except RecursionError:
         raise InputError("The story is no valid TOML: its lists are nested too deeply.") from None
     lines = Lines(text)
-    _check_keys(found, _TOP, lines, "", 0, "a story")
+    _check_keys(tables, _TOP, lines, "", 0, "a story")
     for table, (known, most) in _TABLES.items():
-        entries = found.get(table, ())
+        entries = tables.get(table, ())
         if len(entries) > most:
             raise InputError(f"The story has {len(entries)} {table}s: keep to {most} or fewer.")
         for i, entry in enumerate(entries):
             if not isinstance(entry, Mapping):
                 raise InputError(f"{lines.where('', 0, table)}{table} must be written as [[{table}]].")
             _check_keys(entry, known, lines, table, i, f"a {table}")
-    given = {name: found[name] for name in _SETTINGS if name in found}
+    given = {name: tables[name] for name in _SETTINGS if name in tables}
     return (
         {"loop": SceneRequest.loop, "planned": SceneRequest.planned}
         | given
         | {
-            "beats": tuple(_beat(entry, i, lines) for i, entry in enumerate(found.get("beat", ()))),
-            "paths": tuple(_path(entry, i, lines) for i, entry in enumerate(found.get("path", ()))),
-            "poses": tuple(_pose(entry, i, lines, folder) for i, entry in enumerate(found.get("pose", ()))),
+            "beats": tuple(_beat(entry, i, lines) for i, entry in enumerate(tables.get("beat", ()))),
+            "paths": tuple(_path(entry, i, lines) for i, entry in enumerate(tables.get("path", ()))),
+            "poses": tuple(_pose(entry, i, lines, folder) for i, entry in enumerate(tables.get("pose", ()))),
         }
     )
 
@@ -192,9 +192,9 @@ def _sentence(error: Exception) -> str:
 
 
 def _check_keys(
-    found: Mapping[str, Any], known: Mapping[str, tuple[type, ...]], lines: Lines, table: str, index: int, what: str
+    row: Mapping[str, Any], known: Mapping[str, tuple[type, ...]], lines: Lines, table: str, index: int, what: str
 ) -> None:
-    for key, value in found.items():
+    for key, value in row.items():
         if key not in known:
             where = lines.where(table, index, key)
             near = difflib.get_close_matches(key[:40], known, n=1)
@@ -256,10 +256,10 @@ def _check_words(text: str) -> None:
     `tomllib` takes quadratic time and memory for a key of many parts, so a stranger's text is looked through before it
     is parsed.
     """
-    outline = _ASIDE.sub(lambda found: '""' + "\n" * found[0].count("\n"), text)
-    if found := _TOO_LONG.search(outline):
-        line = outline.count("\n", 0, found.start()) + 1
-        raise InputError(f"Line {line}: {found[0][:20]!r} … is longer than any key or number of a story: shorten it.")
+    outline = _ASIDE.sub(lambda match: '""' + "\n" * match[0].count("\n"), text)
+    if match := _TOO_LONG.search(outline):
+        line = outline.count("\n", 0, match.start()) + 1
+        raise InputError(f"Line {line}: {match[0][:20]!r} … is longer than any key or number of a story: shorten it.")
 
 
 class Lines(dict[tuple[str, int, str], int]):
