@@ -47,9 +47,15 @@ def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
     unchosen = run(tab, model="bigraphdiff", class_name=None)[-1]
     assert "No class is chosen" in unchosen["line"] and "record" not in unchosen
     for way, sentence in (("intergen", True), ("bigraphdiff", False)):
-        *shown, _, guidance, steps, pace = tab.asked_by(way)
+        *shown, guidance, steps, pace, planned, strictness, tries = tab.asked_by(way)
         assert steps["value"] == pace["value"] == (FAST if sentence else FAITHFUL)
-        assert [update["visible"] for update in shown] == [sentence, not sentence]
+        assert [update["visible"] for update in (*shown, planned, strictness, tries)] == [
+            sentence,
+            not sentence,
+            sentence,
+            sentence,
+            sentence,
+        ], "a class has no plan, nor acts to try for"
         assert guidance["value"] == GenerateRequest(prompt="x").guidance if sentence else guidance["value"] < 4
 
 
@@ -153,7 +159,6 @@ def test_words_become_paths_unless_that_is_switched_off(tab: GenerateTab) -> Non
         assert last["record"].result.manifest["request"]["planned"] is planned
         assert f"Plan from the words</dt><dd>{'on' if planned else 'off'}<" in last["readouts"]
         assert ("fixes 60 %" if planned else "The network makes all") in last["laid"]
-    assert [tab.asked_by(way)[2]["visible"] for way in ("intergen", "bigraphdiff")] == [True, False]
 
 
 def test_the_switch_of_steps_shows_how_a_kept_run_was_made(tab: GenerateTab) -> None:
@@ -185,7 +190,8 @@ def test_a_kept_run_opens_with_paths_from_words_as_it_was_made(
     entry = Entry(id="x", kind="generate", title="t", state="done", request=asked)
     found = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={"planned": not planned})))
     assert found[tab.planned]["value"] is planned
-    assert found[tab.planned]["visible"] is ("model" not in changed)
+    of_sentences = (tab.planned, tab.sampling.strictness, tab.sampling.tries)
+    assert {found[part]["visible"] for part in of_sentences} == {"model" not in changed}
 
 
 def test_an_edited_plan_is_made_in_place_of_its_sentence(tab: GenerateTab) -> None:

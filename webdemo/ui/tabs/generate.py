@@ -139,7 +139,7 @@ class GenerateTab(JobTab):
         self.gallery.fill(self.prompt, self.seconds, self.sampling.seed, self.go, **QUIET)
         asked_by = {name: self.asked_by(name) for _, name in generate_choices()}
         form = self.sampling
-        fitted = [self.by_sentence, self.class_name, self.planned, form.guidance, form.steps, form.pace]
+        fitted = [self.by_sentence, self.class_name, form.guidance, form.steps, form.pace, *self._of_sentences()]
         self.model.input(None, inputs=self.model, outputs=fitted, js=looked_up(asked_by), **QUIET)
 
     def _ask(self) -> None:
@@ -190,14 +190,19 @@ class GenerateTab(JobTab):
     def asked_by(way: str) -> Updates:
         """Shows the inputs that a method takes, and sets its guidance and steps."""
         found, by_class = method(way), takes_class(way)
+        by_sentence = gr.update(visible=not by_class)
         return (
-            gr.update(visible=not by_class),
+            by_sentence,
             gr.update(visible=by_class),
-            gr.update(visible=not by_class),
             gr.update(value=found.default("guidance", GenerateRequest.guidance)),
             gr.update(value=found.steps),
             gr.update(value=pace_of(found.steps)),
+            *(by_sentence,) * 3,
         )
+
+    def _of_sentences(self) -> list[Any]:
+        """The settings that a class has no use for."""
+        return [self.planned, self.sampling.strictness, self.sampling.tries]
 
     # ---- what is shown ---------------------------------------------------------------------------
 
@@ -223,14 +228,15 @@ class GenerateTab(JobTab):
         """Also what was asked by: a sentence or a class."""
         asked = run.entry.request
         model = asked.get("model", GenerateRequest.model)
-        sentence, label, plan, *_ = self.asked_by(model)
+        sentence, label, *_ = self.asked_by(model)
         found = super().opened(run)
+        found |= {part: found.get(part, {}) | sentence for part in self._of_sentences()}
         if takes_class(model):
             label = gr.update(value=asked.get("prompt"), visible=True)
         else:
             found[self.reading] = self._opened_reading(asked, run.result)
         planned = bool(asked.get("planned", takes_class(model)))  # once, words did not become paths
-        found[self.planned] = plan | {"value": planned}
+        found[self.planned] |= {"value": planned}
         return found | {self.by_sentence: sentence, self.class_name: label}
 
     def _opened_reading(self, asked: Mapping[str, Any], result: Result) -> dict[str, Any]:
