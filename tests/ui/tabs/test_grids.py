@@ -160,6 +160,7 @@ def test_a_story_under_several_settings_makes_a_grid(tmp_path: Path) -> None:
     ]
     assert len(last["player"]["value"]["samples"][0]["cells"]) == 4
     assert last["reading"] == gr.update(checked={})
+    assert last["spans"]["visible"] is False, "of several motions none is made again in part"
     assert [beat["words"] for beat in last["story"]["value"]["beats"]] == [b.words for b in asked[0].beats]
 
 

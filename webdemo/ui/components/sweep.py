@@ -174,7 +174,7 @@ def grid_table(results: Mapping[str, Result]) -> str:
         marked = "".join(_cell(m.key, m.digits, cell, list(values.values()), bool(m.better)) for m in measures)
         acts = f"<td><b>{done[name] or '–'}</b></td>" * any(done.values())
         rows += f'<tr><th scope="row">{text(name)}</th>{acts}{marked}</tr>'
-    caption = "Read-outs of the grid, the best in green and the worst in red"
+    caption = "Best in green, worst in red"
     return f'<div class="pd-readouts">{table(caption, heads, rows, "pd-grid-table")}</div>'
 
 

@@ -26,7 +26,7 @@ from webdemo.ui.components.sweep import (
     whole,
 )
 from webdemo.ui.history import Opened
-from webdemo.ui.text.panels import notes_lines, status, total
+from webdemo.ui.text.panels import all_notes, status, total
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import seconds
 
@@ -124,10 +124,9 @@ class Grids:
             made[name] = yield from tab.made(session, request, label=f"{i + 1} of {len(wanted)}, {name}. ")
         title = f"{tab.title(wanted[0])} · grid of {len(wanted)}"
         spent = seconds(sum(map(total, made.values())))
-        notes = {note: None for result in made.values() for note in notes_lines(result).splitlines() if note}
         yield {
             **grid_shown(grid, made, title) | tab.laid_out(made.values()) | tab.beside_grid(made, asked),
-            "line": status(f"{len(wanted)} results done in {spent}.", tone="done") + "".join(notes),
+            "line": status(f"{len(wanted)} results done in {spent}.", tone="done") + all_notes(made),
             "under": gr.update(visible=True),
             **tab.results.fresh(),
         }

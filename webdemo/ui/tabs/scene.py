@@ -72,6 +72,7 @@ class SceneTab(JobTab):
             "story": gr.update(value=value_of(request)),
             "prompt": _changed(fields),
             "reading": gr.update(checked={}),
+            "spans": gr.update(visible=False),
         }
 
     def title(self, request: SceneRequest) -> str:

@@ -51,8 +51,23 @@ def made_line(result: Result) -> str:
 
 def notes_lines(result: Result) -> str:
     """The notes of a result, but for the verdict on its acts."""
-    notes = (note for note in result.notes if not note.startswith(_VERDICT))
-    return "".join(status(note, tone="note" if note.startswith(_NO_WARNINGS) else "warning") for note in notes)
+    return all_notes({"": result})
+
+
+def all_notes(results: Mapping[str, Result]) -> str:
+    """The notes of several results, each once: those of some only begin with the names of these."""
+    named: dict[str, list[str]] = {}
+    for name, result in results.items():
+        for note in result.notes:
+            if not note.startswith(_VERDICT):
+                named.setdefault(note, []).append(name)
+    return "".join(
+        status(
+            note if len(names) == len(results) else f"{', '.join(names)}: {note}",
+            tone="note" if note.startswith(_NO_WARNINGS) else "warning",
+        )
+        for note, names in named.items()
+    )
 
 
 def effect_line(results: Iterable[Result]) -> str:
