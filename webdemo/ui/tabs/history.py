@@ -30,10 +30,13 @@ from .study import StudyPanel
 LABEL = "History"
 EMPTY, NOTHING_FOUND = "notebook.empty", "notebook.nothing_found"
 """Keys of what the notebook says where there is no run, or none that fits."""
+_EVERYTHING = Search()
 _LAST = "last"
 _NAMED = f"""() => new URLSearchParams(window.location.search).get('run')
     || (sessionStorage.getItem('pas-de-deux-made') ? '{_LAST}' : '')"""
 """The run that the page's address names, or the last one where this browser tab has made any."""
+_HIDDEN = '() => Array(2).fill({ __type__: "update", visible: false })'
+"""JavaScript that hides what two earlier actions left."""
 
 
 class HistoryTab:
@@ -79,6 +82,7 @@ class HistoryTab:
         shown = [self.view, self.who, self.line, self.address, self.saved, self.removed]
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
+        gr.on([self.view.edit, self.view.apply], None, outputs=[self.address, self.saved], js=_HIDDEN, **QUIET)
         self.files.wire(shown[:2], self.line, self.saved, self.removed)
         self.study.wire(tab, self.view.edit)
         self.sharing.wire(tab, self.view.apply)
@@ -91,26 +95,22 @@ class HistoryTab:
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def _found(self, search: Search, removed: Sequence[str]) -> dict[str, Any]:
-        found = self.history.search(visitor().owner, search)
-        filtered = search != Search(limit=search.limit)
-        empty = NOTHING_FOUND if filtered else EMPTY
-        return shown(found, empty=empty, removed=len(removed), search=search)
-
-    def refresh(self, removed: list[str]) -> Updates:
-        """The newest runs, whose they are, and how much room these use."""
-        room = ""
+    def refresh(self, removed: list[str], search: Search = _EVERYTHING) -> Updates:
+        """The newest runs that a search finds, whose they are, and how much room all of these use."""
+        room, found = "", Found((), 0)
+        empty = EMPTY if search == Search(limit=search.limit) else NOTHING_FOUND
         try:
-            found = self._found(Search(), removed)
+            found = self.history.search(visitor().owner, search)
             room = room_html(self.history.usage(visitor()))
         except Exception as error:
-            found = shown(Found((), 0), empty=error_line(error))
-        return gr.update(value=found), _signed_in(visitor()) + room
+            empty = error_line(error)
+        view = shown(found, empty=empty, removed=len(removed), search=search)
+        return gr.update(value=view), _signed_in(visitor()) + room
 
     def act(self, removed: list[str], event: gr.EventData) -> Updates:
         """Does what was pressed in the notebook, and shows the list as it is then."""
         line, address, saved = gr.skip(), gr.update(visible=False), gr.update(visible=False)
-        search = Search()
+        search = _EVERYTHING
         try:
             action = Action.read(event._data)
             search, owner = action.wanted, visitor().owner
@@ -133,13 +133,7 @@ class HistoryTab:
                 line = status(self._one(action, owner), tone="done")
         except Exception as error:
             line = status(error_line(error), tone="error")
-        view, who = self.refresh(removed) if search == Search() else (gr.skip(), gr.skip())
-        if search != Search():
-            try:
-                view = gr.update(value=self._found(search, removed))
-            except Exception as error:
-                line = status(error_line(error), tone="error")
-        return view, who, line, address, saved, removed
+        return *self.refresh(removed, search), line, address, saved, removed
 
     def _one(self, action: Action, owner: str) -> str:
         """Does something with one run and says so in a sentence."""
