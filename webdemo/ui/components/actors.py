@@ -159,7 +159,8 @@ def result_source(result: Result, title: str) -> Source:
 
     It is called after the file that the result began with, or else after its title.
     """
-    given = result.manifest.get("request", {}).get("actor", {})
+    asked = result.manifest.get("request", {})
+    given = asked.get("motion" if asked.get("kind") == "predict" else "actor") or {}
     return Source(given.get("name") or title, result.duets[0].people)
 
 

@@ -127,7 +127,8 @@ class ActorPanel(SourcePanel):
     def _part_line(source: Source, start: float, end: float) -> str:
         end = min(end, source.seconds)
         shortest, longest = SECONDS
-        used = f"{source.name}: {start:.1f} to {end:.1f} s of {source.seconds:.1f} s."
+        part = "" if end - start > source.seconds - 0.05 else f"{start:.1f} to {end:.1f} s of "
+        used = f"{source.name}: {part}{source.seconds:.1f} s."
         if end - start < shortest - 1e-6:
             return status(f"{used} Take {shortest:g} s or more.", tone="warning")
         if end - start > longest + 0.05:
