@@ -48,6 +48,8 @@ _WRITE = """() => {
 """JavaScript that makes a field ready for typing where its tab was opened by a mouse; to be filled with its id."""
 _BEGIN_WITH = """(own, first) => ({ __type__: "update", ...(own ? {} : { value: first }) })"""
 """JavaScript that lets an empty player begin with what another shows, so that the page carries the example once."""
+_OF_GRADIO = ("common.upload", "upload_text.drop_file", "upload_text.click_to_upload")
+"""Keys of Gradio's texts that are others here."""
 _HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
 _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""
@@ -172,7 +174,7 @@ def launch_options() -> dict[str, Any]:
         "head": HEAD,
         "footer_links": [],
         "run_history": False,
-        "i18n": gr.I18n(en={"common.upload": "Add files"}),
+        "i18n": gr.I18n(en={key: say(key) for key in _OF_GRADIO}),
         "ssr_mode": False,
         "show_error": True,
         "max_file_size": MAX_BYTES,

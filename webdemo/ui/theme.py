@@ -28,6 +28,7 @@ _COLOURS = {
     "button_primary_background_fill": "press",
     "button_primary_background_fill_hover": "press-hover",
     "button_secondary_background_fill": "panel",
+    "button_secondary_text_color": "text",
     "button_secondary_background_fill_hover": "hover",
     "button_secondary_border_color": "edge",
 }
