@@ -32,7 +32,7 @@ def test_sentences_and_toml_give_files(endpoint: SceneEndpoint) -> None:
 
 def test_a_span_of_a_file_is_made_again(endpoint: SceneEndpoint, tmp_path: Path) -> None:
     (path,) = write(walking(5.0), tmp_path / "walk.npz")
-    _, files = endpoint.scene("They wave.", str(path), 1.0, 3.0)
+    _, files = endpoint.scene("They wave.", str(path), start=1.0, end=3.0)
     made = read(Path(next(file for file in files if file.endswith(".npz"))))
     np.testing.assert_array_equal(made.positions[:, 90:], read(path).positions[:, 90:])
 

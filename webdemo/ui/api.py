@@ -303,20 +303,19 @@ class SceneEndpoint(Endpoint):
         self,
         story: str,
         motion: str | None = None,
-        start: float = 0,
-        end: float = 0,
         samples: float | None = None,
         seed: float | None = None,
         progress: gr.Progress = PROGRESS,
-        **facts: Any,
+        **asked: Any,
     ) -> Answer:
         """A scene of several beats, or a span or a continuation of a given motion."""
 
         def request() -> SceneRequest:
             fields = read_words(story, in_time())
+            given = _two_people(motion, reading_choices(asked)) if motion else None
             fields |= {key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None}
-            given = _two_people(motion, reading_choices(facts)) if motion else None
-            return SceneRequest(**fields, motion=given, start=start or None, end=end or None)
+            fields |= {key: asked.get(key) or None for key in ("start", "end")}
+            return SceneRequest(**fields, motion=given)
 
         return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress, reads=bool(motion))
 
@@ -376,33 +375,21 @@ class RenderEndpoint(Endpoint):
         """See :meth:`Endpoint.outputs`."""
         return [gr.File(label="the film, sheet or figure")]
 
-    def render(
-        self,
-        motion: str,
-        kind: str,
-        look: str,
-        theme: str,
-        view: str,
-        fps: float,
-        width: float,
-        height: float,
-        file_fps: float = 0.0,
-        **facts: Any,
-    ) -> str:
+    def render(self, motion: str, kind: str, look: str, theme: str, view: str, **asked: Any) -> str:
         """A film, a contact sheet or a plotly figure of a motion file."""
         folder = self.page.shelf.folder()
         try:
             if not motion:
                 raise InputError("There is no motion: send a motion file, such as a .bvh.")
             kind, look, theme = kind or "mp4", look or Style.look, theme or Style.theme
-            fps, width, height = (
-                given if given is not None else usual
-                for given, usual in zip((fps, width, height), (film.FPS, *film.SIZE), strict=True)
-            )
+            usual = {"fps": film.FPS, "width": film.SIZE[0], "height": film.SIZE[1]}
+            fps, width, height = (asked[name] if asked[name] is not None else usual[name] for name in usual)
             if width > 1920 or height > 1080:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
             with READING.place():
-                found = read(Path(motion), choices=reading_choices(facts | {"fps": file_fps}), longest=films.LONGEST)
+                found = read(
+                    Path(motion), choices=reading_choices(asked | {"fps": asked["file_fps"]}), longest=films.LONGEST
+                )
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
             style = Style(look=look, theme=theme, names=suffix not in SHEETS)
