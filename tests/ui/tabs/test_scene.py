@@ -123,7 +123,7 @@ def test_words_that_were_written_are_laid_out(tab: SceneTab) -> None:
         ({"beats": [{"words": "x"}] * 500}, "beats: keep to 60"),
         ({"beats": [{"words": ["x"]}]}, "must be text"),
         ({"beats": [{"words": "x"}], "paths": [{"person": "a", "points": [[0, 99, 0]]}]}, "outside the floor"),
-        ({"beats": [{"words": "x"}], "paths": [{"person": "a", "points": [7]}]}, "damaged"),
+        ({"beats": [{"words": "x"}], "paths": [{"person": "a", "points": [7]}]}, "Point 1 of a path"),
         ({"beats": [{"words": "x"}], "paths": 3}, "damaged"),
     ],
 )
