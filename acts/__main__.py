@@ -70,7 +70,7 @@ def main() -> int:
             problems = list(check_folder(given.folder))
             for problem in problems:
                 print(problem)
-            print(f"{len(problems)} problems." if problems else "All entries are read as their examples say.")
+            print(f"Problems: {len(problems)}." if problems else "All entries are read as their examples say.")
             return 1 if problems else 0
         print(json.dumps(Plan.model_json_schema(), indent=2))
     except InputError as error:

@@ -205,6 +205,9 @@ def problem(error: ValidationError) -> str:
     first = error.errors()[0]
     where = ".".join(str(part) for part in first["loc"])
     said = first["msg"].removeprefix("Value error, ").rstrip(".")
+    known = first.get("ctx", {})
+    if expected := known.get("expected_tags") or known.get("expected"):
+        said = f"{known.get('tag', first['input'])!r:.60} is not known: use one of {expected}"
     return f"{where}: {said}." if where else f"{said[:1].upper()}{said[1:]}."
 
 

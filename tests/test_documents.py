@@ -73,6 +73,17 @@ def test_what_a_document_mentions_exists(document: str) -> None:
         assert not missing_names(text)
 
 
+def test_every_module_that_a_document_calls_by_its_name_alone_exists() -> None:
+    modules = {path.name for folder in (*FOLDERS.split("|"), "acts") for path in (ROOT / folder).rglob("*.py")}
+    written = {"toy.py", "ours.py", "app.py"}  # by the reader, and at the root
+    named = {
+        (document, name)
+        for document in ("README.md", "CONTRIBUTING.md", *(d for d in DOCUMENTS if d.startswith("docs/")))
+        for name in re.findall(r"`(\w+\.py)`", (ROOT / document).read_text())
+    }
+    assert not {each for each in named if each[1] not in modules | written}
+
+
 def test_every_document_is_in_the_index() -> None:
     index = (ROOT / "docs" / "README.md").read_text()
     linked = {(ROOT / "docs" / target).resolve() for target in _LINK.findall(index) if "://" not in target}

@@ -21,6 +21,7 @@ from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.methods import failed, method, methods, register_settings
 from webdemo.inference.own import entries
+from webdemo.inference.own.classes import find_class, method_of_class
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENT = ROOT / "docs" / "own-model.md"
@@ -95,6 +96,15 @@ def test_the_tables_of_the_document_are_read(folder: Path) -> None:
         assert not wrong
         named |= {entry.method for entry in found.values()}
     assert named == {"", "intergen", "regennet", "interformer", "bigraphdiff"}
+
+
+def test_weights_of_own_data_are_planned_for_as_the_shipped_ones(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "own-data.md").read_text()
+    (code,) = re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    (tmp_path / "ours.py").write_text(code)
+    ours = method_of_class(find_class("ours.py:Ours", tmp_path))
+    shipped = method("intergen")
+    assert (ours.tasks, ours.takes) == (shipped.tasks, shipped.takes)
 
 
 RUN = "    def run(self, request, cancel, timer):\n"

@@ -143,7 +143,7 @@ class _Stage:
             moves=moves,
             idle=idle,
             frozen=frozenset(self.frozen),
-            gesturing=waving - self.changes.keys(),
+            gesturing=waving - self.changes.keys() - self.jumps.keys() - self.bows.keys(),
             gestures=self.gestures,
             touch=self.touch,
             hold=self.hold,

@@ -6,7 +6,8 @@ import pytest
 
 from acts.__main__ import check_entry, check_folder
 from acts.lexicon import OURS, lexicon
-from acts.reading import wordnet
+from acts.reading import read, wordnet
+from acts.staging.stage import score_of
 from motion import InputError
 
 ENTRIES = lexicon().entries
@@ -35,7 +36,10 @@ WRONG = {
     "slot": ('[x]\nframes = ["{a} hug {c}"]\ncaption = ["x"]\nreads = ["x"]', "{c} in the frame"),
     "field": ('[x]\nframes = ["{a} hug"]\ncaption = ["x"]\nreads = ["x"]\nlength = 3', "length"),
     "empty": ('[x]\nframes = []\ncaption = ["x"]\nreads = ["x"]', "frames"),
-    "shape": ('[x]\nframes = ["{a} hug"]\ncaption = ["x"]\nreads = ["x"]\nstage = [{do = "fly"}]', "stage"),
+    "shape": (
+        '[x]\nframes = ["{a} hug"]\ncaption = ["x"]\nreads = ["x"]\nstage = [{do = "fly"}]',
+        "stage.0: 'fly' is not known: use one of 'go', ",
+    ),
     "toml": ("[x\n", "is no TOML"),
     "table": ("x = 3\n", "write the entry as a table"),
     "reads": ('\n[zig]\nframes = ["{a} zig"]\ncaption = ["x"]\nreads = ["She sleeps."]', "is not read as zig"),
@@ -63,6 +67,20 @@ def test_a_lab_adds_an_act_with_one_entry(tmp_path: Path) -> None:
     assert list(check_folder(tmp_path)) == []
     assert "ollie" in lexicon((tmp_path,)).entries
     assert "ollie" not in lexicon().entries
+
+
+@pytest.mark.parametrize("shape", ["jump", "bow"])
+def test_an_entry_that_jumps_or_bows_and_gestures_does_both(
+    shape: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "own.toml").write_text(
+        '[ollie]\nframes = ["{a} ollie"]\ncaption = ["{a} [jump]"]\nreads = ["She ollies."]\n'
+        f'stage = [{{do = "{shape}"}}, {{do = "gesture", gesture = "spread"}}]'
+    )
+    monkeypatch.setenv("PASDEDEUX_ACTS", str(tmp_path))
+    score = score_of(read("She ollies.").acts)
+    assert "a" in {**score.jumps, **score.bows} and "a" in score.gestures
+    assert "a" not in score.gesturing, "who only gestures stands still"
 
 
 def test_a_folder_that_is_none_is_refused(tmp_path: Path) -> None:

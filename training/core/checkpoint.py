@@ -69,7 +69,8 @@ def restore_part(path: Path, name: str, module: nn.Module) -> None:
     Raises InputError for a damaged file and for a module of other sizes.
     """
     try:
-        module.load_state_dict(_part(_read(path)[0], name))
+        tensors, _ = read_tensors(path, "give a folder of weights or a run's last.safetensors.")
+        module.load_state_dict(_part(tensors, name))
     except RuntimeError as error:
         raise InputError(f"{path} holds a network of other sizes: give the settings it was trained with.") from error
 

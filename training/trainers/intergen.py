@@ -125,8 +125,7 @@ class Trainer(DuetTrainer):
         """Writes the averaged network as it is shipped, with a reader of touches and a bank of training captions."""
         scenes, model = self.data.scenes, self.ema.cpu()
         average(model, self.began, self.share)
-        model, reads = with_touches(model, scenes)
-        print(f"touches read from test captions: {reads:.1%}")
+        model = with_touches(model, scenes)
         save_folder(folder, model, caption_bank(scenes), card={"summary": SUMMARY}, trained_steps=self.step)
 
 

@@ -182,7 +182,9 @@ class Data:
         self.scenes, self.settings, self.device = scenes, settings, device
         self.rows = self.weighted(scenes.split("train"))
         if len(self.rows) < settings.batch:
-            raise InputError(f"{len(self.rows)} training scenes do not fill a batch of {settings.batch}.")
+            raise InputError(
+                f"{len(self.rows)} training scenes do not fill a batch of {settings.batch}: lower --batch."
+            )
         if captions:
             known = self.known_captions()
             known |= {mirror_caption(c) for c in known}

@@ -288,8 +288,7 @@ class Trainer(SceneTrainer):
 
     def export(self, folder: Path) -> None:
         """Writes the averaged network as it is shipped, with a reader of touches."""
-        model, reads = with_touches(self.ema.cpu(), self.data.scenes)
-        print(f"touches read from test captions: {reads:.1%}")
+        model = with_touches(self.ema.cpu(), self.data.scenes)
         save_network(folder, model, card={"summary": SUMMARY}, trained_steps=self.step)
 
 

@@ -41,3 +41,5 @@ def test_a_part_of_other_sizes_is_refused(tmp_path: Path) -> None:
     checkpoint.save(path, parts(0), 1, "{}")
     with pytest.raises(InputError, match="other sizes"):
         checkpoint.restore_part(path, "model", nn.Linear(4, 2))
+    with pytest.raises(InputError, match="give a folder of weights"):
+        checkpoint.restore_part(tmp_path / "nowhere", "model", nn.Linear(3, 2))

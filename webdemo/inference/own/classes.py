@@ -10,13 +10,13 @@ import sys
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from motion import Clip, Duet, InputError
 from motion.skeleton import SMPL22
-from webdemo.inference.method import SECONDS, Method, Pipeline
+from webdemo.inference.method import SECONDS, Method, Pipeline, Task
 from webdemo.inference.run import Cancelled, CancelToken, Progress, Result, StageTimer
 
 from .entries import Entry
@@ -24,7 +24,7 @@ from .entries import Entry
 log = logging.getLogger(__name__)
 
 _FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/'\":]+/)+")
-TASKS = ("generate", "react", "predict")
+TASKS = get_args(Task)
 INPUTS = ("words", "actor", "first pose", "either role", "past")
 
 
@@ -50,7 +50,7 @@ def method_of_class(pipeline: Any, *, name: str = "", label: str = "") -> Method
         raise InputError("it is not a class with a method `run(request, cancel, timer)`.")
     name = name or str(getattr(pipeline, "name", "") or pipeline.__name__.lower())
     tasks = _texts(pipeline, "tasks", ("generate",), TASKS)
-    assumed = {"generate": ("words",), "react": ("actor",), "predict": ("past",)}
+    assumed = {"generate": ("words",), "react": ("actor",), "predict": ("past",), "scene": ("words",)}
     takes = _texts(pipeline, "takes", tuple(t for task in tasks for t in assumed[task]), INPUTS)
     seconds = getattr(pipeline, "seconds", SECONDS)
     if not (isinstance(seconds, tuple | list) and len(seconds) == 2 and 0 < seconds[0] <= seconds[1] <= 60):

@@ -54,9 +54,8 @@ class SceneTab(JobTab):
 
     def request(self, fields: Mapping[str, Any]) -> SceneRequest:
         """The whole story; raises InputError where it cannot be made."""
-        plain = {f: fields[f] for f in ("seed", "guidance", "steps", "damping")}
-        plain |= {f: fields.get(f, getattr(SceneRequest, f)) for f in ("tries", "strictness")}  # older grids have none
-        return SceneRequest(**story_fields(fields["story"]), samples=int(fields["samples"]), **plain)
+        settings = {f: fields[f] for f in self.sampling.controls if f in fields}  # older grids lack some
+        return SceneRequest(**story_fields(fields["story"]), **settings)
 
     def settled(self, fields: Mapping[str, Any]) -> Mapping[str, Any]:
         """The story that is made with the text that stands for it; see :func:`settled`."""
