@@ -24,6 +24,8 @@ JOINTS = tuple(
 _LEVELS = 255
 _BODY = 0.2
 """Metres by which a body is wider and taller than its joints."""
+_NEAR, _FAR = 0.6, 0.9
+"""Metres from the middle up to which people stand where they are, and at which those stand who are far away."""
 
 
 def thumbnail(motion: Duet | Clip) -> str:
@@ -31,13 +33,16 @@ def thumbnail(motion: Duet | Clip) -> str:
 
     The first byte is the number of people and the second that of frames; then follow x and y (down) of every joint
     (person, frame, joint), 0 to 255. People are seen from the side of the line between them, by a camera that goes
-    along with them.
+    along with them; who is far away is moved nearer, so that all thumbnails show people of one size.
     """
     people = stacked_positions(motion).astype(np.float64)
     moments = np.linspace(0, people.shape[1] - 1, FRAMES).round().astype(int)
     seen = people[:, moments][:, :, JOINTS]
     flat = np.stack([_across(people, seen), -seen[..., 1]], axis=-1)
     flat[..., 0] -= flat[..., 0, 0].mean(axis=0)[None, :, None]
+    pelvis = np.abs(flat[..., :1, 0])
+    beyond = np.maximum(pelvis - _NEAR, 0.0) / (_FAR - _NEAR)
+    flat[..., 0] -= np.sign(flat[..., :1, 0]) * (_FAR - _NEAR) * (beyond - np.tanh(beyond))
     low, high = flat.min(axis=(0, 1, 2)), flat.max(axis=(0, 1, 2))
     low, high = low - _BODY, high + _BODY
     size = max(float((high - low).max()), 1.0)
