@@ -1,4 +1,4 @@
-"""Makes the thumbnails of the drawer's examples anew, as the shipped networks make them: ``python -m tests.gallery``."""
+"""Makes the thumbnails of the drawer's examples anew with the shipped networks: ``python -m tests.gallery``."""
 
 from __future__ import annotations
 
