@@ -17,7 +17,7 @@ from motion import InputError
 
 from .captions import naming, with_thing
 from .lexicon import Entry, Lexicon, kind_of, lexicon
-from .plan import FROM_BEHIND, Act, Plan
+from .plan import FROM_BEHIND, ON_TIPTOE, Act, Plan
 from .reading import wordnet
 from .reading.parses import Parse, parses
 from .reading.people import A_NAME, ANYONE, B_NAME
@@ -35,6 +35,8 @@ MOST_WORDS = 12
 _CONTENT = frozenset(("NOUN", "PROPN", "VERB", "ADJ", "ADV", "NUM"))
 _KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "offered", "not")
 """Verbs about other verbs, which the acts' modality, polarity and order stand for."""
+_SLOWEST_WALK = 0.7
+"""The factor of speed from which a verb says how fast somebody walks; slower ones are gaits of their own."""
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _PHRASAL = re.compile(r"\[([a-z-]+)\] (?:\{b\} )?([a-z]+)")
 _WORD, _SLOTS = re.compile(r"[a-z]+"), re.compile(r"\{(?![\w.]+:)[^{}]*\}")
@@ -229,7 +231,7 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return act.patient is None or act.part_of in act.agents
     if _is_target(token) and "{b}" in shown_caption(act, entry):
         return not any(c.lower_.endswith(("self", "selves")) for c in token.children)
-    if any(forms & each for each in (said_words(entry.caption), set(act.manner))):
+    if any(forms & each for each in (said_words(entry.caption), set(" ".join(act.manner).split()))):
         return True
     if words.likeness.get(lemma) in act.manner:
         return True
@@ -245,7 +247,9 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     if (family := words.part(lemma)) and not (lemma in words.metres and act.distance is not None):
         sided = act.side is not None and lemma in closed("limbs") and any(c.lower_ == act.side for c in token.children)
         return sided or (act.part is not None and family == words.part(act.part))
-    if (text in words.speeds and act.speed != 1.0) or (lemma in words.gaits and act.speed != 1.0):
+    if (text in words.speeds and act.speed != 1.0) or (lemma in closed("on tiptoe") and ON_TIPTOE in act.manner):
+        return True
+    if act.speed != 1.0 and words.gaits.get(lemma, 0.0) > _SLOWEST_WALK:
         return True
     if (way is not None and way == act.direction) or (text == "both" and act.side == "both"):
         return True

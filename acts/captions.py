@@ -16,6 +16,7 @@ from acts.plan import other_of
 from .frames import Frame
 from .lexicon import Entry, Lexicon, kind_of, lexicon
 from .plan import Act, Plan
+from .reading.vocabulary import closed
 
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _SLOT = re.compile(r"\{([a-z_]+)\} ?")
@@ -102,15 +103,21 @@ def _by_hand(act: Act, caption: str) -> str:
     told = any(slot in caption for slot in ("{side}", "{limb}", "{part}", "{direction}"))
     if act.side not in ("left", "right") or act.side == act.direction or act.part or told:
         return ""
-    return f" with the {act.side} {'foot' if _BY_FOOT.search(caption) else 'hand'}"
+    return by_limb(act, caption)
+
+
+def by_limb(act: Act, caption: str) -> str:
+    """The limb on the act's side that does it: " with the left foot"."""
+    own = act.part if act.part in closed("limbs") and act.part_of in act.agents else None
+    return f" with the {act.side} {own or ('foot' if _BY_FOOT.search(caption) else 'hand')}"
 
 
 def with_thing(act: Act, caption: str) -> tuple[Act, str]:
     """An act and a caption with the thing that its words name, in place of an example: "a book"."""
     words = caption.split()
-    for i, (article, noun) in enumerate(pairwise(words)):
-        if act.thing and article == "a" and kind_of(noun):
-            caption = " ".join([*words[:i], "{thing}", *words[i + 2 :]])
+    for i, (article, noun) in enumerate(pairwise([*words, ""])):
+        if act.thing and ((article == "something" and kind_of(act.thing)) or (article == "a" and kind_of(noun))):
+            caption = " ".join([*words[:i], "{thing}", *words[i + 1 + (article == "a") :]])
             break
     named = act.thing if act.thing in _PRONOUNS else f"the {act.thing}"
     return (act.model_copy(update={"thing": named}) if act.thing else act), caption

@@ -22,12 +22,12 @@ from motion.metrics.sentences.language import check, mask_of, masks, measured
 from motion.metrics.sentences.touches import BODY
 
 from .accounting import account, shown_caption
-from .captions import with_thing, worded
+from .captions import by_limb, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
-from .plan import Act, Plan
+from .plan import ON_TIPTOE, Act, Plan
 from .qualifiers import OTHER_THING, plain, qualifiers
 from .reading.vocabulary import vocabulary
-from .shapes import Lift, Posture
+from .shapes import Lift, is_attitude
 
 ONLY = {"tried": "only tried", "offered": "only offered", "pretended": "only pretended", "wished": "only wished"}
 """The reason why an act that is not told cannot be judged, by its modality."""
@@ -204,11 +204,7 @@ def _middle(stretch: tuple[int, int], motion: Motion) -> float:
 
 def _is_attitude(entry: Entry) -> bool:
     """True for an act after which somebody stays as they are: sits, kneels, or is carried."""
-    return any(
-        isinstance(shape, Lift)
-        or (isinstance(shape, Posture) and not (shape.passing or shape.already) and shape.posture != "stands")
-        for shape in entry.stage
-    )
+    return any(isinstance(shape, Lift) or is_attitude(shape) for shape in entry.stage)
 
 
 def _held_before(act: Act, plan: Plan, motion: Motion, known: Lexicon) -> str:
@@ -317,10 +313,19 @@ def _words(act: Act, entry: Entry | None) -> str:
     caption = shown_caption(act, entry)
     if act.polarity == "not":
         caption = re.sub(r"\[([a-z-]+)\]", r"[do] not \1", caption, count=1)
+    if act.already:
+        caption = caption.replace("] down", "]")  # "they sit", and not "they sit down"
     text = worded(*with_thing(act, caption))
     for person, name in (("person A", "A"), ("person B", "B")):
         text = text.replace(person, name)
-    return text
+    if act.side == "both":
+        text = text.replace(" a hand ", " both hands ")
+    elif act.side not in (None, act.direction, *text.split()) and "side" in "".join(entry.rule):
+        text += by_limb(act, caption)
+    pace = "slowly" if act.speed < 0.7 else "quickly" * (act.speed > 1.4)
+    if pace and pace not in text and set(act.manner) <= {ON_TIPTOE}:
+        text += f" {pace}"
+    return text + " once" * (act.times == 1)
 
 
 # ---- the motion in words -------------------------------------------------------------------------------

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 from acts.plan import other_of
 from motion import InputError
@@ -107,6 +107,11 @@ class Event:
     goes: bool = False
     noun: Event | None = None
     """The same with the verb that its noun stands for: "gives a hug" as "hugs"."""
+
+    def bare(self, lemma: str, **arguments: Any) -> Event:
+        """The clause with another verb, without the arguments and modifiers of its own but for these."""
+        kept = {name: getattr(self, name) for name in ("denied", "ongoing", "state", "modality", "first", "last")}
+        return Event(lemma, **(kept | arguments))
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,8 @@ MOST_ACTS = 60
 """Acts of a plan, at most: what sixty beats of one act each need."""
 FROM_BEHIND = "from behind"
 """Manner of an act that is done to the other from behind them."""
+ON_TIPTOE = "on tiptoe"
+"""Manner of who goes somewhere without a sound."""
 
 
 def other_of(who: str | None) -> str:

@@ -12,7 +12,7 @@ from motion.metrics.sentences.touches import BODY
 
 from .accounting import said_words, shown_caption
 from .lexicon import Entry
-from .plan import FROM_BEHIND, Act
+from .plan import FROM_BEHIND, ON_TIPTOE, Act
 from .reading.vocabulary import closed, is_act, vocabulary
 from .shapes import Go, Touch
 
@@ -41,7 +41,7 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     caption = shown_caption(act, entry)
     words = said_words((caption,))
     goes = next((shape for shape in entry.stage if isinstance(shape, Go)), None)
-    if act.times is not None and act.times > 1 and "n" not in names:
+    if act.times is not None and "n" not in names:
         yield "how often", ""
     if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
         yield "which side", ""
@@ -50,11 +50,11 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     both = _BOTH.search(said) if act.side == "both" else None
     if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
-    comes = goes is not None and goes.way == "to" and act.direction == "up"  # "walks up to"
     leaves = "backs" in names and act.direction in ("away", "back")  # "backs away"
-    if act.direction is not None and act.direction not in words and "way" not in names and not (comes or leaves):
+    own = act.direction in said_words((*entry.frames, *entry.caption)) and act.direction in ("up", "down", "out")
+    if act.direction is not None and act.direction not in words and "way" not in names and not (own or leaves):
         yield "which way", _goes_way(act, who) if goes else ""
-    if abs(act.speed - 1.0) > 0.15:
+    if abs(act.speed - 1.0) > 0.3:  # who strolls walks
         yield "how fast", _at_speed(act.speed, goes, who) if goes else ""
     if act.distance is not None:
         yield (
@@ -65,7 +65,9 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         yield "how long", ""
     if FROM_BEHIND in act.manner:
         yield "from where", f"happens(both({mask}, behind({who})))" if mask else ""
-    told = {FROM_BEHIND, *closed("fillers"), *vocabulary().speeds}
+    if ON_TIPTOE in act.manner:
+        yield "in which manner", f"happens(both(heels_up({who}), walks({who}, 0.3, 0.1)), 0.5)"
+    told = {FROM_BEHIND, ON_TIPTOE, *closed("fillers"), *vocabulary().speeds}
     if not told.issuperset(act.manner):
         yield "in which manner", ""
     if (
@@ -89,7 +91,7 @@ def plain(act: Act, kinds: frozenset[str]) -> Act:
         "with both hands": {"side": None},
         "on both sides": {"side": None},
         "which way": {"direction": None, "side": None if act.side == act.direction else act.side},
-        "how fast": {"manner": ()},
+        "how fast": {"manner": (), "speed": 1.0},
         "in which manner": {"manner": ()},
         "from where": {"manner": ()},
     }

@@ -321,6 +321,8 @@ class Arguments:
             return
         if text in ("once", "twice", "thrice", "repeatedly"):
             event.times = self._words.numbers[text]
+            for child in (c for c in token.children if c.dep_ == "advmod"):  # "spins around twice"
+                self._modifier(child, event)
             return
         if token.dep_ == "prt":
             event.particles.append(text)
@@ -355,12 +357,10 @@ class Arguments:
         noun = event.object
         if noun is not None and noun.kind == "thing" and noun.lemma == event.lemma:  # "dances a slow dance"
             event.object = noun = None
-        if noun is not None and noun.kind == "thing" and noun.lemma in self._verbs:
+        if noun is not None and noun.kind == "thing" and noun.lemma in self._verbs and is_act(noun.lemma):
             for kind in ("tried", "wished", "not", "pretended", "offered"):  # "wants a hug", "refuses the dance"
                 if event.lemma in self._words.verbs[kind] and event.lemma not in ("hope", "promise"):
-                    if kind == "offered" and (
-                        wordnet.usual_kind(noun.lemma) == "consumption" or not is_act(noun.lemma)
-                    ):
+                    if kind == "offered" and wordnet.usual_kind(noun.lemma) == "consumption":
                         continue  # "offers her a drink" hands something over
                     event.lemma, event.object, event.dative = noun.lemma, event.dative, None
                     event.modality = event.modality if kind == "not" else kind

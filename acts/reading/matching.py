@@ -249,6 +249,7 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
     named = ref is None or ref.lemma in closed("same") or ref.kind == "person"
     named = named or (ref is not None and ref.lemma == "thing" and "same" in event.words)
     named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in closed("movements")))
+    named = named or (ref is not None and ref.lemma == (last.thing or last.part))
     named = named or (repeats and ref is not None and ref.lemma in known.frames)
     if subject is None or subject.kind != "person" or not named:
         return None
@@ -257,15 +258,18 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
     declines = event.lemma in verbs["not"] | verbs["wished"]
     if event.lemma != "do" and not repeats and not declines:
         return None
-    if declines and (
-        (ref is not None and ref.lemma not in closed("same")) or not (event.denied or event.lemma in verbs["not"])
-    ):
+    if declines and not (event.denied or event.lemma in verbs["not"]):
+        return None
+    if declines and ref is not None and ref.lemma not in closed("same") and ref.lemma != (last.thing or last.part):
         return None
     agents, other = tuple(subject.who), other_of(subject.who) or "a"
     if len(last.agents) > 1 or (len(agents) > 1 and event.lemma != "do"):
         return None
     both = len(agents) > 1 or last.patient is None
+    offer = declines and last.act == "offer-thing" and agents == (last.patient,)
+    taken = ("hold-hands" if last.part else "take-from") if offer else last.act  # what does not happen
     return {
+        "act": taken,
         "agents": agents,
         "patient": None if both else (last.patient if agents == last.agents else other),
         "polarity": "not" if declines or event.denied else "done",
@@ -362,21 +366,7 @@ def held(event: Event, found: Found, known: Lexicon, find: Find) -> Iterator[tup
         words = [word for word in event.words if word in closed("arms held")]
         if preposition in ("to", "from") or (preposition == "with" and not words):  # "from foot to foot" rises to none
             continue
-        posture = replace(
-            event,
-            lemma="stand",
-            subject=Ref("person", agents),
-            object=None,
-            dative=None,
-            words=words,
-            particles=[],
-            noun=None,
-            times=None,
-            prepositions=[(preposition, ref)],
-            side=None,
-            direction=None,
-            adverbs=[],
-        )
+        posture = event.bare("stand", subject=Ref("person", agents), words=words, prepositions=[(preposition, ref)])
         posed = find(posture)
         if posed is not None and posed[0] != found[0] and not posed[2].rest and posed[2].score > 1.5:
             yield posture, posed

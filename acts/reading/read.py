@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from acts.frames import Event, Frame, Match, Ref
-from acts.lexicon import SEATS, Lexicon, is_fixture, kind_of, lexicon
-from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread, other_of
-from acts.shapes import Go
+from acts.lexicon import SEATS, Entry, Lexicon, is_fixture, kind_of, lexicon
+from acts.plan import MOST_ACTS, ON_TIPTOE, Act, Plan, Relation, Span, Unread, other_of
+from acts.shapes import Go, is_attitude
 from motion import InputError
 
 from .matching import Found, completed, formations, held, is_next_to, matcher, noun_acts, of_the_last, repeated, seated
@@ -288,6 +288,9 @@ class _Planner:
             name = other
         if name == "follow" and event.lemma in vocabulary().verbs["goes"] and self._rests(match.patient):
             name = "come-behind"  # "B lies down. A walks behind B."
+        entry, words = self._known.entries[name], self._span(number)
+        if beside is None and (begun := self._includes(entry, match.agents)) is not None:
+            words = Span(start=begun.start, stop=words.stop)
         number_of = str(len(self._acts) + 1)
         self.cost += 0.5 * match.left
         part = match.part
@@ -295,15 +298,16 @@ class _Planner:
         for adverb in event.adverbs:
             speed *= vocabulary().speeds.get(adverb, 1.0)
         usual = Go.model_fields["speed"].default
-        if any(isinstance(shape, Go) and shape.speed == usual for shape in self._known.entries[name].stage):
+        goes = [shape for shape in entry.stage if isinstance(shape, Go)]
+        if any(shape.speed == usual for shape in goes):
             speed *= vocabulary().gaits.get(event.lemma, 1.0)
+        toes = any(word == "on" and ref.lemma in closed("on tiptoe") for word, ref in event.prepositions)
+        toes = toes or (event.lemma in closed("on tiptoe") and not any(shape.gait for shape in goes))
         patient = match.patient
-        entry = self._known.entries[name]
         upwards = entry.thing == "throws" and event.direction == "up"  # to nobody
         shared = entry.mutual and event.modality == "offered"
         if (entry.to == "other" or shared) and len(match.agents) == 1 and not upwards:
             patient = patient or other_of(match.agents)
-        goes = any(isinstance(shape, Go) for shape in entry.stage)
         given = event.object is None or entry.thing == "throws"
         answers = event.direction == "back" and patient and given and not goes  # "waves back", "throws it back"
         owner = None
@@ -329,21 +333,33 @@ class _Planner:
             part_side=part_side,  # type: ignore[arg-type]
             polarity="not" if event.denied else "done",
             modality=event.modality,  # type: ignore[arg-type]
-            already=self._goes_on(event, match.agents) and not self._known.entries[name].moment,
+            already=self._goes_on(event, match.agents, entry) and not entry.moment,
             seconds=event.seconds,
             side=side if side in ("left", "right", "both") else None,  # type: ignore[arg-type]
             times=None if event.distance and not name.startswith("step") else event.times,
-            manner=tuple(event.adverbs[:8]),
+            manner=(*([ON_TIPTOE] if goes and toes else ()), *event.adverbs[:7]),
             speed=min(max(speed, 0.2), 3.0),
             direction=None if answers else event.direction,
             distance=event.distance,
-            words=self._span(number),
+            words=words,
         )
         self._acts.append(act)
         if beside is not None:
             self._beside[number_of] = beside
         else:
             self._of[number] = number_of
+
+    def _includes(self, entry: Entry, agents: str) -> Span | None:
+        """Takes out the act before with which an act's captions begin, as "bends down and picks up"; its words."""
+        last = next(reversed(self._acts), None)
+        if last is None or last.agents != tuple(agents) or not last.happens or last.seconds or last.times:
+            return None
+        own = self._known.entries[last.act].caption[0]
+        if last.already or not any(text.startswith((f"{own} and [", f"{own} to ")) for text in entry.caption):
+            return None
+        self._acts.pop()
+        self._of = {number: name for number, name in self._of.items() if name != last.id}
+        return last.words
 
     def _rests(self, who: str | None) -> bool:
         """True for a person whose last act was to sit, kneel or lie down."""
@@ -361,13 +377,15 @@ class _Planner:
         goals = (ref for word, ref in event.prepositions if word in closed("before goals") and ref.kind == "thing")
         return next((ref.lemma for ref in goals if is_fixture(ref.lemma)), None)
 
-    def _goes_on(self, event: Event, agents: str) -> bool:
-        """True for what somebody is doing when the text first speaks of them."""
+    def _goes_on(self, event: Event, agents: str, entry: Entry) -> bool:
+        """True for what somebody is doing when the text first speaks of them, or how they sit while they do that."""
         if event.state:
             return True
-        told = {who for act in self._acts for who in act.agents}
+        told = {act.id for act in self._acts if set(act.agents) & set(agents)}
+        if event.joint == "while" and event.beside is not None and any(is_attitude(shape) for shape in entry.stage):
+            told.discard(self._of.get(event.beside, ""))  # "pats him while both are sitting"
         ongoing = event.ongoing or (event.joint == "while" and event.direction != "down")
-        return ongoing and not told & set(agents)
+        return ongoing and not told
 
 
 def _side_of_other(part: Ref | None, frame: Frame, match: Match, patient: str, owner: str | None) -> str | None:

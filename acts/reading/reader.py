@@ -14,7 +14,7 @@ from .arguments import Arguments
 from .ellipsis import Absolute, absolutes
 from .people import A_NAME, B_NAME, Cast
 from .subjects import Subjects, give_roles, goes_on, is_passive, names_one, reference, state_of
-from .syntax import MARKS, NOUNMARKS, ClauseTree, is_ongoing, seems, tells_on
+from .syntax import ClauseTree, is_ongoing, seems, tells_on
 from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
@@ -216,16 +216,8 @@ class Reader:
             self.cast.seen.pop(token.i, None)
             return
         before = self.events[self._of[token.head.i]]
-        event = Event(
-            before.lemma,
-            ref,
-            before.object,
-            before.dative,
-            denied=before.denied,
-            modality=before.modality,
-            first=token.idx,
-            last=token.idx + len(token.text),
-        )
+        said = {"subject": ref, "object": before.object, "dative": before.dative, "ongoing": False, "state": False}
+        event = before.bare(before.lemma, **said, first=token.idx, last=token.idx + len(token.text))
         self._arguments.fill(token, event)
         self._joints.append((event, token, "with", token.head.i))
         self.events.append(event)
@@ -330,7 +322,8 @@ class Reader:
         marks = [c.lower_ for c in bare if c.dep_ in ("mark", "advmod", "prep", "cc", "intj")]
         above = head if head is not None else next((t for t in token.ancestors if self._tree.is_clause(t)), None)
         previous = max((i for i in self._of if i < token.i), default=None)
-        listed = above is not None and above.i < token.i and token.dep_ in _LISTED and MARKS.keys().isdisjoint(marks)
+        own = next((kind for mark in marks if (kind := self._words.marks.get(mark))), "")
+        listed = above is not None and above.i < token.i and token.dep_ in _LISTED and not own
         if not closed("then").isdisjoint(marks) or (listed and self._then_before(token)):
             return "then", previous
         if not closed("at once").isdisjoint(marks) and token.dep_ != "xcomp":
@@ -343,14 +336,11 @@ class Reader:
         if above is None:
             return "after", None
         if token.dep_ == "pobj":
-            return NOUNMARKS.get(token.head.lower_, "with"), above.i
+            return self._words.noun_marks.get(token.head.lower_, "with"), above.i
         if token.dep_ == "pcomp":
-            return MARKS.get(token.head.lower_, "with"), above.i
+            return self._words.marks.get(token.head.lower_, "with"), above.i
         if token.dep_ == "advcl":
-            for mark in marks:
-                if mark in MARKS:
-                    return MARKS[mark], above.i
-            return "while", above.i
+            return own or "while", above.i
         if token.dep_ == "amod":
             return "while", above.i
         if token.dep_ == "relcl" and token.i > above.i and token.tag_ != "VBG" and tells_on(token):

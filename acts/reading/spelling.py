@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from string import ascii_lowercase
 from typing import TYPE_CHECKING
@@ -12,17 +12,9 @@ from acts.frames import PREPOSITIONS
 from acts.lexicon import Lexicon
 
 from . import wordnet
-from .syntax import is_adverb, is_word
-from .vocabulary import closed, is_act, vocabulary
-
-if TYPE_CHECKING:
-    from spacy.tokens import Doc
-
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
 from .people import A_NAME, B_NAME
-from .syntax import is_noun_or_side
+from .syntax import is_adverb, is_noun_or_side, is_word
+from .vocabulary import closed, is_act, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -162,17 +154,6 @@ def other_language(text: str) -> str | None:
 
 
 # ---- verbs that the parser took for nouns, found by where they stand ----------------------------------
-_SAFE = {
-    "s": ("admires", "arrives", "jumps"),
-    "ing": ("admiring", "arriving", "jumping"),
-    "ed": ("admired", "arrived", "jumped"),
-    "": ("admire", "arrive", "jump"),
-}
-"""Forms of a verb with and of two without an object that the parser hardly takes for anything else."""
-_SAFE_WITH_VERB = {"s": "starts", "ing": "starting", "ed": "started", "": "start"}
-"""The same before another verb: "mimes drinking"."""
-_DO = {"does": "makes", "do": "make", "did": "made"}
-"""Forms of "do", and of a verb in the same form that is no part of another."""
 _JOINS = frozenset(("and", "then", "but", ",", ";", "or"))
 _TAKEN_FOR = frozenset(("NOUN", "PROPN", "ADJ", "INTJ", "X"))
 """Parts of speech for which the parser takes a verb of a list."""
@@ -182,7 +163,8 @@ _TAGS = {"VBZ": "s", "VBD": "ed", "VBP": "", "VB": ""}
 
 def others(safe: str) -> tuple[str, ...]:
     """The other safe verbs in the same form, for where the parser takes one for something else after all."""
-    return next((tuple(word for word in verbs if word != safe) for verbs in _SAFE.values() if safe in verbs), ())
+    forms: list[str] = next((verbs[:-1] for verbs in vocabulary().safe.values() if safe in verbs[:-1]), [])
+    return tuple(word for word in forms if word != safe)
 
 
 def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[str, str]]:
@@ -218,10 +200,11 @@ def deeds_done(doc: Doc, is_deed: Callable[[str], bool]) -> dict[int, tuple[str,
         doc: the text as it was parsed.
         is_deed: tells whether a noun, in the singular, stands for what somebody does.
     """
+    do = vocabulary().do
     return {
-        token.idx: (_DO[token.lower_], "do")
+        token.idx: (do[token.lower_], "do")
         for token in doc
-        if token.lower_ in _DO
+        if token.lower_ in do
         and token.dep_ == "aux"
         and token.head.i == token.i + 1
         and any(is_deed(c.lemma_.lower()) and c.left_edge.i == token.i + 2 for c in token.head.children)
@@ -273,13 +256,13 @@ def _next(token: Token) -> Token | None:
 def _safe(token: Token, ending: str) -> str:
     following = _next(token)
     if following is not None and following.tag_ == "VBG":
-        return _SAFE_WITH_VERB[ending]
+        return vocabulary().safe[ending][-1]
     has_object = (
         following is not None
         and following.pos_ in ("DET", "PRON", "PROPN", "NOUN", "ADJ", "NUM")
         and following.lower_ not in PREPOSITIONS
     )
-    return _SAFE[ending][not has_object]
+    return vocabulary().safe[ending][not has_object]
 
 
 def _ends_phrase(token: Token) -> bool:

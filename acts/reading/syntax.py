@@ -125,7 +125,7 @@ def seems(token: Token) -> bool:
 def is_likeness(token: Token) -> bool:
     """True for a noun that only says what somebody is like: "walks like an old man", "like children"."""
     children = {child.lower_ for child in token.children}
-    bare = token.tag_ == "NNS" and all(child.dep_ not in ("det", "poss", "nummod") for child in token.children)
+    bare = token.tag_ == "NNS" and all(child.dep_ not in ("det", "poss") for child in token.children)
     indefinite = bare or not children.isdisjoint(("a", "an"))
     return token.dep_ == "pobj" and token.head.lower_ == "like" and indefinite
 
@@ -188,31 +188,6 @@ def adverb_of(adjective: str) -> str:
 # ---- clauses: how they lie beside each other, which are main ones, and their characters -----------------
 
 
-MARKS = {
-    "while": "while",
-    "as": "while",
-    "whereas": "while",
-    "whilst": "while",
-    "by": "while",
-    "with": "while",
-    "when": "main-after",
-    "after": "main-after",
-    "once": "main-after",
-    "upon": "main-after",
-    "until": "main-until",
-    "till": "main-until",
-    "before": "after",
-    "because": "with",
-    "so": "after",
-    "without": "while",
-    "instead": "with",
-}
-"""How a clause with this word lies beside its main clause; "main-after" puts the main clause behind it."""
-
-NOUNMARKS = {"after": "main-after", "following": "main-after", "upon": "main-after", "before": "after"}
-"""Prepositions behind which a noun stands for an act of its own."""
-
-
 def is_finite(token: Token) -> bool:
     """True for a verb with a tense, which has a subject of its own."""
     return token.tag_ not in ("VBG", "VBN") and token.dep_ not in ("xcomp", "pcomp")
@@ -223,7 +198,8 @@ def may_be_main(token: Token) -> bool:
     if token.dep_ == "ccomp":  # of two clauses with nothing but a comma between them, the first
         return token.i < token.head.i and any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
     if token.dep_ == "advcl":
-        marks = any(c.dep_ in ("mark", "aux") or c.lower_ in MARKS for c in token.children)
+        words = vocabulary()
+        marks = any(c.dep_ in ("mark", "aux") or c.lower_ in words.marks for c in token.children)
         return not marks and token.tag_ in ("VB", "VBP", "VBZ")
     return token.dep_ in ("conj", "parataxis")
 
@@ -296,7 +272,7 @@ class ClauseTree:
             return False  # "who remains seated"
         if token.pos_ in ("VERB", "AUX") and token.dep_ not in ("aux", "auxpass", "compound", "punct"):
             return True
-        if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in NOUNMARKS:
+        if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in self._words.noun_marks:
             known = self.lemma(token) in self._verbs and token.tag_ == "NN"  # "after a quick hug"
             known = known and not self._words.part(token.lemma_.lower())
             return known and token.head.head.pos_ in ("VERB", "AUX") and not self._words.is_person(token.lemma_.lower())

@@ -38,13 +38,21 @@ class Vocabulary:
         self.numbers: dict[str, int] = dict(tables["numbers"])
         self.metres: dict[str, float] = dict(tables["metres"])
         self.seconds: dict[str, float] = dict(tables["seconds"])
-        self.directions = {w: name for name, text in tables["directions"].items() for w in text.split()}
-        self.speeds = {w: float(value) for value, text in tables["speeds"].items() for w in text.split()}
-        self.gaits = {w: float(value) for value, text in tables["gaits"].items() for w in text.split()}
-        """Factors of speed that a verb brings along, beside a walk."""
-        self.likeness = {w: adverb for adverb, text in tables["likeness"].items() for w in text.split()}
+        named = ("directions", "speeds", "gaits", "likeness", "marks", "noun_marks")
+        by_word = {table: {w: name for name, text in tables[table].items() for w in text.split()} for table in named}
+        self.directions, self.likeness = by_word["directions"], by_word["likeness"]
         """How somebody moves who moves like one of these."""
+        self.speeds, self.gaits = ({w: float(x) for w, x in by_word[name].items()} for name in ("speeds", "gaits"))
+        """Factors of speed of adverbs, and those that a verb brings along, beside a walk."""
+        self.marks, self.noun_marks = by_word["marks"], by_word["noun_marks"]
+        """How a clause with one of these words lies beside its main clause, and an act that a noun behind one names."""
+        sides, ways = (("left", "right"), ("right", "left")), tables["to_sides"]["phrases"]
+        self.to_sides = [tuple(words.format(*two).split()) for words in ways for two in sides]
         self.verbs = _sets(tables["verbs"])
+        self.safe = {ending.strip("-"): words.split() for ending, words in tables["safe verbs"].items()}
+        """Forms, by ending, of a verb with, of two without an object and of one before another verb."""
+        self.do: dict[str, str] = tables["do"]
+        """Forms of "do", and of a verb in the same form that is no part of another."""
         self.light: tuple[str, ...] = tuple(tables["verbs"]["light"].split())
         """Verbs that mean what their object names, in the order in which they are tried."""
         self.adjectives = _sets(tables["adjectives"])

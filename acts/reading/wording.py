@@ -5,33 +5,20 @@ Each change keeps the offsets, so that what was understood can be shown in the t
 
 from __future__ import annotations
 
+import bisect
+import re
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .ellipsis import Ellipsis, stands_absolutely
 from .people import A_NAME, B_NAME
+from .syntax import is_adverb
 from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
     from .spelling import Speller
 
-import bisect
-import re
-from collections.abc import Callable, Collection, Iterator, Mapping
-
-from .syntax import is_adverb
-
-_TO_SIDES = tuple(
-    tuple(words.format(*sides).split())
-    for words in ("{} and {}", "from {} to {}", "{} to {}", "to the {} and {}", "to the {} and the {}")
-    for sides in (("left", "right"), ("right", "left"))
-)
-"""Words behind a part of the body that say that it moves from side to side."""
-_LIES = ("lie", "lying", "lay", "fall", "fell", "land", "roll", "flat")
-"""How verbs begin of which "on her back" says how she lies herself."""
-_STROKES = ("pat", "strok", "rub", "scratch", "massag", "caress", "touch", "tickl")
-"""How verbs begin of which "her back" is what the hand is on."""
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
 """Letters and numbers behind "person" or "dancer", and whether they name the first."""
 
@@ -94,7 +81,7 @@ class _Preparation:
 
     def _phrase(self, i: int) -> int:
         """Several words that join clauses as one does, as "as soon as"; how many they were, or 0."""
-        swung = next((words for words in _TO_SIDES if self._stand_at(i, words)), ())
+        swung = next((words for words in self._words.to_sides if self._stand_at(i, words)), ())
         if swung and self._words.named_part(self._lower(i - 1)):
             return self._as_one("sideways", i, len(swung))  # "shakes his head left and right"
         for phrase, word in self._words.phrases.get(self._lower(i), ()):
@@ -108,8 +95,8 @@ class _Preparation:
         if self._lower(i) == "round" and ends and self._is_verb(self._lower(i - 1)):
             return self._as_one("around", i, 1)  # the adverb, and no noun: "and spin round"
         owned = self._lower(i - 1).endswith("'s") and self._lower(i - 1) not in ("he's", "she's", "it's")
-        laid = self._lower(i - 2) == "on" and self._lower(i - 3).startswith(_LIES)
-        rubbed = self._lower(i - 2).startswith(_STROKES)
+        laid = self._lower(i - 2) == "on" and self._lower(i - 3).startswith(tuple(closed("lies")))
+        rubbed = self._lower(i - 2).startswith(tuple(closed("strokes")))
         turned = self._lower(i - 1) == "her" and (self._lower(i + 1) in closed("behind back") or laid or rubbed)
         if self._lower(i) == "back" and (owned or turned):
             return self._as_one("spine", i, 1)  # the noun, and no adverb

@@ -15,7 +15,7 @@ from itertools import pairwise
 from acts import shapes
 from acts.captions import of_each
 from acts.lexicon import Lexicon, is_fixture, kind_of, lexicon
-from acts.plan import FROM_BEHIND, Act, beats, other_of
+from acts.plan import FROM_BEHIND, ON_TIPTOE, Act, beats, other_of
 
 from .act_kinds import (
     figure_of,
@@ -296,7 +296,7 @@ class _Stage:
             metres=act.distance if act.distance is not None and way in ("ahead", "back") else shape.metres,
             near=shape.near,
             backwards=shape.backwards,
-            gait=shape.gait,
+            gait=shape.gait or (ON_TIPTOE if ON_TIPTOE in act.manner else ""),
             rightwards=act.direction in _RIGHTWARDS,
         )
 

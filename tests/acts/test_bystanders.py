@@ -14,7 +14,7 @@ from motion.metrics.sentences.language import check
 from motion.transforms import facing
 
 RECORDED = Path(__file__).parents[1] / "data" / "bystanders" / "bystanders.npz"
-STANDS = {"stand-still", "freeze", "keep-distance"}
+STANDS = {"stand-still", "freeze", "keep-distance", "face-other"}
 TALKS = {"talk", "argue", "nod", "bend-arm", "look-up", "lift-head"}
 """What a person does who talks with hands and head."""
 WALKS = {

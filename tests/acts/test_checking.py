@@ -12,10 +12,10 @@ from motion import Duet
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check
 from motion.skeleton import SBU15
-from tests.motion.metrics.test_sentence_shapes import duet, each, index, put, shift, spin, tilt
+from tests.motion.metrics.test_sentence_shapes import Edit, duet, each, index, put, shift, spin, tilt
 
 ENTRIES = lexicon().entries
-STANDING = {"stand-still", "freeze", "keep-distance"}
+STANDING = {"stand-still", "freeze", "keep-distance", "face-other"}
 """Acts of two people who stand and look at each other."""
 
 
@@ -138,7 +138,7 @@ def test_what_no_rule_covers_is_not_judged() -> None:
 # ---- measures --------------------------------------------------------------------------------------------
 def test_a_measure_says_how_far_off_it_was() -> None:
     assert one(told("hand-on", part="shoulder"), duet(gap=1.8)).measure.startswith("hand 1.")
-    assert one(told("walk-up"), duet()).measure == "A comes 0.0 m nearer, 50 cm needed"
+    assert one(told("walk-up"), duet()).measure == "A comes 0 cm nearer, 50 cm needed"
     assert one(told("turn-around"), duet(spin(40))).measure.startswith("A turns by 3")
     near = duet(gap=0.6)
     near.positions[0, :, index("left_wrist")] = near.positions[1, :, index("right_shoulder")] + [0, 0.34, 0]
@@ -283,12 +283,48 @@ def test_another_skeleton_is_refused() -> None:
 
 @pytest.mark.parametrize(
     ("sentence", "words"),
-    [("He brings her a plate.", "A hands the plate to B"), ("A picks up a book.", "A picks up the book")],
+    [
+        ("He brings her a plate.", "A hands the plate to B"),
+        ("A picks up a book.", "A picks up the book"),
+        ("She holds out a mug to him.", "A offers B the mug"),
+        ("A jumps once.", "A jumps once"),
+        ("A runs around B.", "A walks around B quickly"),
+        ("A sneaks up behind B on tiptoe.", "A comes up behind B on tiptoe slowly"),
+        ("A puts both hands on B's hips.", "A puts both hands on B's hip"),
+        ("A kicks with the left foot.", "A kicks B with the left foot"),
+        ("A is sitting.", "A sits"),
+    ],
 )
-def test_a_verdict_names_the_thing_of_the_words(sentence: str, words: str) -> None:
+def test_a_verdict_names_the_thing_and_the_qualifiers_of_the_words(sentence: str, words: str) -> None:
     """And not the caption's example of one."""
     (found,) = checked(read(sentence), duet())
     assert found.words == words
+
+
+def test_who_walks_on_tiptoe_all_along_has_no_flat_stance() -> None:
+    def glide(both: np.ndarray) -> None:
+        both[0, ..., 2] += np.linspace(0, 2, both.shape[1])[:, None]
+        for side in ("left", "right"):
+            both[0, :, index(f"{side}_ankle"), 1] += 0.08 * np.float64(heels)
+
+    for heels in (0, 1):
+        assert verdicts("A walks past B on tiptoe.", duet(glide, gap=1.0)) == [bool(heels)]
+
+
+def test_who_strolls_walks_at_any_pace() -> None:
+    def go(both: np.ndarray) -> None:
+        both[..., 2] += np.linspace(0, 4, both.shape[1])[:, None]
+        both[1] = both[0] + [0.3, 0, 0]
+
+    assert verdicts("They stroll hand in hand.", duet(go)) == [True]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "edits"),
+    [("A offers B a cup.", [put("left_wrist", (0.2, 0.45, 0.4))]), ("They stand facing each other.", [])],
+)
+def test_what_is_there_is_seen(sentence: str, edits: list[Edit]) -> None:
+    assert all(verdicts(sentence, duet(*edits, gap=1.2)))
 
 
 def test_strides_of_somebody_who_sneaks_are_not_fast() -> None:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .joints import Array, Motion
+from .joints import Array, Motion, stretches
 from .paths import sideways
 from .poses import _lift, _wrist_speed
 from .shapes import lean_to
@@ -29,8 +29,8 @@ def _gap(m: Motion, joint: str) -> str:
 
 
 def _gone(m: Motion, rate: Array) -> str:
-    """Metres at a rate of 0.1 m/s or more."""
-    return f"{rate[rate > 0.1].sum() / m.fps:.1f} m"
+    """The longest way at a rate of 0.15 m/s or more."""
+    return _length(max((rate[i:j].sum() for i, j in stretches(rate > 0.15, m.fps)), default=0.0) / m.fps)
 
 
 def _nearer(m: Motion, who: int) -> Array:

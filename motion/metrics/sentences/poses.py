@@ -177,9 +177,9 @@ def reaches(m: Motion, who: int, side: str = "any", metres: float = 0.3) -> Mask
 
 @predicate
 def offers(m: Motion, who: int, side: str = "any") -> Mask:
-    """Stands within two steps of the other, looks at them and holds a hand out to them, below the shoulder."""
+    """Stands within two steps of the other, looks at them and holds a hand out to them, no higher than the shoulder."""
     over_waist = m.pair(who, "wrist")[..., 1] > m.joint(who, "pelvis")[:, 1] + 0.02
-    held = (_reach(m, who) > 0.3) & over_waist & (_lift(m, who) < -0.1) & _still(m, who)
+    held = (_reach(m, who) > 0.3) & over_waist & (_lift(m, who) < 0.05) & _still(m, who)
     return _held_before_other(m, who, _of_side(held, side))
 
 

@@ -77,11 +77,16 @@ def knee_high(m: Motion, who: int, side: str = "any", below: float = 0.2) -> Mas
     return _of_side(drop < below, side) & (m.height(who) > 0.8)
 
 
+_FLAT = 0.08
+"""Metres of an adult's ankle over the ball of a foot that is flat on the floor."""
+
+
 @predicate
 def heels_up(m: Motion, who: int, rise: float = 0.04) -> Mask:
-    """Both ankles are ``rise`` metres or more higher over the toes than in the person's flattest stance."""
+    """Both ankles are ``rise`` metres or more higher over the toes than in the person's flattest stance, or any."""
     over = m.pair(who, "ankle")[..., 1] - m.pair(who, "foot")[..., 1]
-    return np.all(over > np.percentile(over, 10, axis=-1, keepdims=True) + rise, axis=0)
+    flat = np.minimum(np.percentile(over, 10, axis=-1, keepdims=True), _FLAT * m.size(who))
+    return np.all(over > flat + rise, axis=0)
 
 
 @predicate

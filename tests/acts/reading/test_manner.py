@@ -62,7 +62,7 @@ def test_what_somebody_is_like_is_nobody_else() -> None:
         ("A appears.", ["enter"]),
         ("A looks left.", ["look-around"]),
         ("A looks around as if lost.", ["look-around"]),
-        ("A looks at B like a child.", ["turn-to"]),
+        ("A looks at B like a child.", ["face-other"]),
     ],
 )
 def test_how_somebody_looks_is_how_they_are(text: str, acts: list[str]) -> None:

@@ -63,7 +63,7 @@ def _said(act: Act) -> str:
         ("They circle each other, hands up.", ["ab circle-together", "ab raise-arm"]),
         ("A pushes B with both palms on the chest.", ["a push b"]),
         # formations
-        ("Both start face to face and end back to back.", ["ab turn-to", "ab back-to-back"]),
+        ("Both start face to face and end back to back.", ["ab face-other", "ab back-to-back"]),
         ("In canon, both bow.", ["a bow", "b bow"]),
         ("They never touch, always two metres apart.", ["ab not touch", "ab keep-distance"]),
         # acts that are nouns
@@ -81,7 +81,7 @@ def _said(act: Act) -> str:
             "One person walks up behind the other and covers his eyes with both hands.",
             ["a come-behind b", "a cover-eyes b"],
         ),
-        ("They stand face to face, hands on each other's shoulders.", ["ab turn-to", "ab hand-on"]),
+        ("They stand face to face, hands on each other's shoulders.", ["ab face-other", "ab hand-on"]),
         ("show me two robots dancing", ["ab dance"]),
         ("They meet, hug and part.", ["ab walk-up", "ab hug", "ab part"]),
     ],
@@ -194,6 +194,8 @@ def test_a_word_that_was_read_once_is_still_misspelt_the_next_time() -> None:
         ("A man sits down on a chair.", [False]),
         ("They are sitting down.", [False]),
         ("While she kneels, he waves.", [True, False]),
+        ("A pats B on the knee while both are sitting.", [False, True]),
+        ("A waves and then sits while B claps.", [False, False, True]),
         ("He waves while she sits down.", [False, False]),
         ("He walks in and sits on the floor.", [False, False]),
         ("The sleeping child is carried by the nurse.", [True, False]),

@@ -10,6 +10,15 @@ from tests.acts.reading.reading import told
 @pytest.mark.parametrize(
     ("text", "acts"),
     [
+        # what is refused is what one would do with an offer
+        ("A offers B a cup and B refuses it.", [("offer-thing", "a", "b"), ("take-from", "b", "a")]),
+        ("A holds out a hand and B refuses it.", [("offer-thing", "a", "b"), ("hold-hands", "b", "a")]),
+        # a hand that is caught, where nobody falls
+        ("A catches B by the wrist.", [("hold-hands", "a", "b")]),
+        # an act that the next one begins with
+        ("A bends down, picks up a cup and bows.", [("pick-up-thing", "a", None), ("bow", "a", None)]),
+        ("A bends down twice and picks up a cup.", [("bend-down", "a", None), ("pick-up-thing", "a", None)]),
+        ("They skip forward together.", [("skip-together", "ab", None)]),
         # WordNet's verbs with their particles
         ("He is bowled over.", [("push-over", "b", "a")]),
         ("He dozes off.", [("lie-down", "a", None)]),
