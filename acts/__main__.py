@@ -36,7 +36,7 @@ def check_entry(name: str, entry: Entry, folders: tuple[Path, ...] = ()) -> Iter
     """A sentence for each example of an entry that is not read as it should be."""
     where = f"{entry.group}.toml, [{name}]"
     if entry.alone and entry.alone not in lexicon(folders).entries:
-        yield f"{where}: alone = “{entry.alone}” is no act."
+        yield f"{where}: alone = “{entry.alone}” is not an act."
     for sentence in entry.reads if entry.shown else ():
         plan = read(sentence, folders)
         found = [act.act for act in plan.acts if act.happens]

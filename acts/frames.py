@@ -321,7 +321,7 @@ def _element(token: str, prepositions: frozenset[str], optional: bool, text: str
         return _Element(frozenset(token.split("|")), "", frozenset(), prepositions, optional)
     slot, _, family = token[1:-1].partition(":")
     if slot not in _SLOTS and slot not in ("a.part", "b.part"):
-        raise InputError(f"{token} in the frame {text!r:.80} is no slot: use {{b}}, {{thing}}, {{part}}, {{self}}, ….")
+        raise InputError(f"{token} in the frame {text!r:.80} is not a slot: use {{b}}, {{thing}}, {{part}}, ….")
     return _Element(frozenset(), slot, frozenset(family.split("|")) - {""}, prepositions, optional)
 
 

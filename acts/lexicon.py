@@ -165,7 +165,7 @@ def _read_all(folder: Path, into: dict[str, Entry]) -> None:
 def files(folder: Path) -> list[Path]:
     """The TOML files of a folder, by name; raises InputError if it is none."""
     if not folder.is_dir():
-        raise InputError(f"{folder} is no folder of acts: name one that holds .toml files.")
+        raise InputError(f"{folder} is not a folder of acts: name one that holds .toml files.")
     return sorted(folder.glob("*.toml"))
 
 
@@ -182,7 +182,7 @@ def read_file(path: Path, into: dict[str, Entry]) -> Iterator[str]:
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        yield f"{path.name} is no TOML: {error}."
+        yield f"{path.name} is not TOML: {error}."
         return
     for name, fields in tables.items():
         where = f"{path.name}, line {_line(text, name)}, [{name}]"

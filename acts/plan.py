@@ -199,7 +199,7 @@ def plan_of(values: Any) -> Plan:
     try:
         return Plan.model_validate(values)
     except ValidationError as error:
-        raise InputError(f"This is no plan of acts: {problem(error)}") from None
+        raise InputError(f"This is not a plan of acts: {problem(error)}") from None
 
 
 def problem(error: ValidationError) -> str:

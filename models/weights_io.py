@@ -78,7 +78,7 @@ class WeightsFolder:
         try:
             return load(self.read(name))
         except SafetensorError as error:
-            raise WeightsError(f"{self.folder.name}/{name} is no safetensors file: restore it.") from error
+            raise WeightsError(f"{self.folder.name}/{name} is not a safetensors file: restore it.") from error
 
     def state_dict(self) -> dict[str, Tensor]:
         """The tensors of all shards in float32, by name."""

@@ -117,7 +117,7 @@ def leg_scale(rig: RigMotion) -> float:
     """SMPL22's leg length over the rig's: what its path is multiplied by so that its steps fit the legs."""
     length = leg_length(places_of(rig))
     if not length > 0.05:
-        raise InputError(f"{rig.name or 'The rig'} has legs of no length: export it with its bones.")
+        raise InputError(f"{rig.name or 'The rig'} has legs of zero length: export it with its bones.")
     return _LEG / length
 
 

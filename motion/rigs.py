@@ -130,7 +130,7 @@ def match_joints(rig: RigMotion) -> BodyParts:
     pelvis = rig.common_ancestor(limbs["left"]["hip"], limbs["right"]["hip"])  # type: ignore[arg-type]
     chest = rig.common_ancestor(limbs["left"]["shoulder"], limbs["right"]["shoulder"])  # type: ignore[arg-type]
     if pelvis < 0 or chest < 0:
-        raise InputError(f"{rig.name or 'The file'} holds more than one skeleton: give one person a file.")
+        raise InputError(f"{rig.name or 'The file'} holds more than one skeleton: put one person in each file.")
     path = rig.path_to_root(chest)
     spine = path[: path.index(pelvis) + 1][::-1] if pelvis in path else [pelvis, chest]
     neck, head = (_best(rig, keys, "centre", part) for part in ("neck", "head"))

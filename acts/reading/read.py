@@ -157,7 +157,7 @@ class _Planner:
         ):
             (event, found), *formed = formed
         if found is not None and not self._known.entries[found[0]].shown:
-            self._unread.append(Unread(words=self._span(number), why="This is nothing that bodies show."))
+            self._unread.append(Unread(words=self._span(number), why="Bodies cannot show this."))
         elif found is not None:
             if inner and any(self._events[i].lemma in f for f in (e.words for e in found[1].elements) for i in inner):
                 self._taken.update(inner)
@@ -256,7 +256,7 @@ class _Planner:
             else:
                 joined.append([first, last])
         reasons = [(each, "These words are not known.") for each in self._nonsense]
-        reasons += [((first, last), "No act takes up these words.") for first, last in joined]
+        reasons += [((first, last), "These words belong to no act.") for first, last in joined]
         for (first, last), why in reasons:
             start, stop = self._prepared.span(first, last)
             if stop > start and not any(u.words.start < stop and start < u.words.stop for u in self._unread):

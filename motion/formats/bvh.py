@@ -242,7 +242,7 @@ def trees(joints: list[Joint], label: str) -> list[tuple[int, int]]:
     """(first, stop) joint of each person, who is a tree of joints; they follow one another."""
     roots = [index for index, joint in enumerate(joints) if joint.parent < 0]
     if len(roots) > MAX_PEOPLE:
-        raise InputError(f"{label} holds {len(roots)} people: give {MAX_PEOPLE} or fewer a file.")
+        raise InputError(f"{label} holds {len(roots)} people: give {MAX_PEOPLE} or fewer in a file.")
     return list(zip(roots, [*roots[1:], len(joints)], strict=True))
 
 

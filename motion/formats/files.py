@@ -268,7 +268,7 @@ def numbers(array: Array, label: str) -> Array:
     if not (np.isfinite(low) and np.isfinite(high)):
         raise InputError(f"{label} holds NaN or infinite numbers: remove or repair those frames.")
     if max(-low, high) > 1e4:
-        raise InputError(f"{label} holds places more than 10 km away: save metres.")
+        raise InputError(f"{label} holds positions more than 10 km away: save them in metres.")
     return values
 
 

@@ -123,7 +123,7 @@ class GlbFile:
 
     def _chunks(self, data: bytes) -> tuple[dict[str, Any], bytes]:
         if len(data) < 20 or struct.unpack_from("<I", data)[0] != _MAGIC:
-            raise InputError(f"{self.label} is no glTF binary file: export it as .glb.")
+            raise InputError(f"{self.label} is not a glTF binary file: export it as .glb.")
         if (version := struct.unpack_from("<I", data, 4)[0]) != 2:
             self.refuse(f"it is of glTF version {version}", "export it as glTF 2.0")
         chunks: dict[int, bytes] = {}

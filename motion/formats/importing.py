@@ -27,7 +27,7 @@ from .registry import RIG_FPS, recordings
 
 _NEAR_FLOOR = (-0.05, 0.15)
 """Metres: people whose lowest joint is between these are left at their height."""
-_UP_TAKEN = "{}: {} was taken as up, by how the body stands, and not {} as is usual: choose the up axis if it is wrong."
+_UP_TAKEN = "{}: {} was taken as up, from how the body stands, not {} as is usual: choose the up axis if it is wrong."
 _CALIBRATION = "{}: the first {} left out, a calibration pose from which the joints jump."
 
 
@@ -118,7 +118,7 @@ def _together(people: Sequence[Recording]) -> Recording:
 
 def _imported(recording: Recording, label: str, choices: ImportChoices) -> Imported:
     if (count := len(recording.people)) > MAX_PEOPLE:
-        raise InputError(f"{label} holds {count} people: give {MAX_PEOPLE} or fewer a file.")
+        raise InputError(f"{label} holds {count} people: give {MAX_PEOPLE} or fewer in a file.")
     people = [without_calibration(person) for person in recording.people]
     rigs = [person for person in people if isinstance(person, RigMotion)]
     clips = [person for person in people if isinstance(person, Clip)]

@@ -160,7 +160,7 @@ def _recording(
         )
     people = array if array.ndim > 3 else array[None]
     if not 1 <= len(people) <= MAX_PEOPLE:
-        raise InputError(f"{label} holds {len(people)} people: give 1 to {MAX_PEOPLE} a file.")
+        raise InputError(f"{label} holds {len(people)} people: give 1 to {MAX_PEOPLE} in a file.")
     check_duration(people.shape[1], rate, label)
     people = numbers(people, label)
     names = _names(named or {}, people.shape[-2])

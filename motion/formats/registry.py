@@ -107,7 +107,7 @@ def _recording(source: str | Path | bytes, name: str | None, choices: ImportChoi
         raise InputError(unknown(suffix, "read", READABLE))
     if choices.animation is not None and suffix not in GLBS:
         raise InputError(
-            f"{Path(label).name} is no .glb file and has no animations to choose from: leave the choice out."
+            f"{Path(label).name} is not a .glb file and has no animations to choose from: leave the choice out."
         )
     remedy = "reduce its mesh or leave out its pictures" if suffix in GLBS else "cut the motion or lower its frame rate"
     data, label = read_bytes(source, name and Path(name).name, remedy=remedy)

@@ -123,7 +123,7 @@ def _vectors(rotations: Array | None, label: str) -> Array:
                 part = slice(first, first + _AT_ONCE)
                 vectors[part] = rotation_vectors(matrices[part])
         except ValueError:
-            raise InputError(f"{label} holds matrices that are no rotations: save it again.") from None
+            raise InputError(f"{label} holds matrices that are not rotations: save it again.") from None
         turns = vectors
     return turns.reshape(len(turns), -1)
 

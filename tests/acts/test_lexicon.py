@@ -40,7 +40,7 @@ WRONG = {
         '[x]\nframes = ["{a} hug"]\ncaption = ["x"]\nreads = ["x"]\nstage = [{do = "fly"}]',
         "stage.0: 'fly' is not known: use one of 'go', ",
     ),
-    "toml": ("[x\n", "is no TOML"),
+    "toml": ("[x\n", "is not TOML"),
     "table": ("x = 3\n", "write the entry as a table"),
     "reads": ('\n[zig]\nframes = ["{a} zig"]\ncaption = ["x"]\nreads = ["She sleeps."]', "is not read as zig"),
     "ignores": ('[zig]\nframes = ["{a} bow"]\ncaption = ["x"]\nreads = ["She bows."]\nignores = ["He bows."]', "zig"),
@@ -84,5 +84,5 @@ def test_an_entry_that_jumps_or_bows_and_gestures_does_both(
 
 
 def test_a_folder_that_is_none_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no folder of acts"):
+    with pytest.raises(InputError, match="not a folder of acts"):
         list(check_folder(tmp_path / "nowhere"))

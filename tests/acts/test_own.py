@@ -37,7 +37,7 @@ def test_folders_of_the_environment_count_for_every_reader(tmp_path: Path, monke
 @pytest.mark.parametrize(
     ("files", "said"),
     [
-        ({"a": "[x\n"}, "a.toml is no TOML.*line 1"),
+        ({"a": "[x\n"}, "a.toml is not TOML.*line 1"),
         ({"b": OLLIE + '\n[zig]\nframes = ["he zigs"]\n'}, r"b.toml, line 6, \[zig\]: "),
         ({"c": "[Zag]\n"}, r"c.toml, line 1, \[Zag\]: a name has at most 60 small letters"),
     ],
@@ -52,5 +52,5 @@ def test_what_is_wrong_is_said_with_file_and_line(
 
 def test_a_folder_that_is_missing_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PASDEDEUX_ACTS", str(tmp_path / "nowhere"))
-    with pytest.raises(InputError, match="is no folder of acts"):
+    with pytest.raises(InputError, match="is not a folder of acts"):
         lexicon()

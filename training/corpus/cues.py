@@ -116,7 +116,7 @@ def steps(cue: str) -> Groups:
         for text in step.split("+"):
             match = _STEP.fullmatch(text)
             if match is None:
-                raise KeyError(f"{text!r} in the cue {cue!r} is no act: write an entry's name, as in pat:shoulder.")
+                raise KeyError(f"{text!r} in the cue {cue!r} is not an act: write an entry's name, as in pat:shoulder.")
             entry(match[1])
             phases.append((match[1], match[2], match[3], bool(match[4])))
         groups.append(tuple(phases))

@@ -308,9 +308,9 @@ def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMoti
     try:
         rows = np.array(json.loads(data)["Frames"], dtype=np.float64)
     except (ValueError, KeyError, TypeError, UnicodeDecodeError) as error:
-        raise InputError(f"{name} is no DeepMimic motion ({error}): it needs JSON with 'Frames'.") from error
+        raise InputError(f"{name} is not a DeepMimic motion ({error}): it needs JSON with 'Frames'.") from error
     if rows.ndim != 2 or rows.shape[1] != WIDTH or len(rows) < 2 or not np.isfinite(rows).all():
-        raise InputError(f"{name} is no DeepMimic motion: it needs two rows or more of {WIDTH} numbers.")
+        raise InputError(f"{name} is not a DeepMimic motion: it needs two rows or more of {WIDTH} numbers.")
     if not (rows[:-1, 0] > 0).all():
         raise InputError(f"{name} has a frame that lasts no time: give every row its seconds.")
     times = np.concatenate([[0.0], np.cumsum(rows[:-1, 0])])

@@ -59,7 +59,7 @@ def read_plan(file: Path) -> Plan:
     """
     try:
         if file.stat().st_size > MOST_PLAN_BYTES:
-            raise InputError(f"{file.name} is larger than {MOST_PLAN_BYTES // 1000} kB, and no plan is.")
+            raise InputError(f"{file.name} is too large for a plan, which has {MOST_PLAN_BYTES // 1000} kB at most.")
         values = json.loads(file.read_text(encoding="utf-8"))
     except OSError:
         raise InputError(f"{file} cannot be read: name a JSON file with a plan of acts.") from None

@@ -50,7 +50,7 @@ async def watch(stuck: Callable[[], str], *, silent_seconds: float = SILENT_SECO
     try:
         while True:
             if reason := stuck():
-                log.critical("The process ends itself, since it is stuck: %s", reason)
+                log.critical("The process is stuck and ends itself: %s", reason)
                 faulthandler.dump_traceback(STDERR)
                 os._exit(STUCK)
             tell_systemd("WATCHDOG=1")

@@ -263,5 +263,5 @@ def settings_of_history() -> Settings:
     """The settings in force; raises InputError where they name no lab that has been started."""
     settings = read_settings()
     if not settings.database.is_file():
-        raise InputError(f"There is no lab's history in {settings.data}: name its folder with {PREFIX}DATA.")
+        raise InputError(f"There is no history of a lab in {settings.data}: name its folder with {PREFIX}DATA.")
     return settings

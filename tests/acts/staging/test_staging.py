@@ -140,7 +140,7 @@ def test_a_plan_by_hand_is_made_and_not_read() -> None:
 def test_what_is_no_act_is_said(acts: object) -> None:
     with pytest.raises(InputError):
         acts_of(acts)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="This is no plan of acts"):
+    with pytest.raises(InputError, match="This is not a plan of acts"):
         GenerateRequest(prompt="They hug.", acts={"acts": acts})  # type: ignore[arg-type]
 
 

@@ -93,7 +93,7 @@ TOO_LARGE = [
     ("seed = " + "9" * 5000, "longer than any key or number"),
     ("beat = [" + '{words="a"},' * 10_000 + "]", "10000 beats"),
     ('[[path]]\nperson="a"\npoints=[' + "[1,2,3]," * 10_000 + "]", "10000 points"),
-    ("[[beat]]\n" + '"""' + '\\"""' * 30_000, "no valid TOML"),
+    ("[[beat]]\n" + '"""' + '\\"""' * 30_000, "not valid TOML"),
     ("They walk and " + "hug and " * 3000 + "part.", "characters: shorten it to 500"),
 ]
 """Texts that are more than a story may be, and what the refusal says."""

@@ -114,7 +114,7 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "keys of another number": (_sampled(output=0), "do not fit|not read here"),
     "a node nowhere": ({"nodes": [each | {"translation": [1e999, 0, 0]} for each in GLTF["nodes"]]}, "nowhere|damaged"),
     "no person": ({"nodes": [each | {"name": "rope"} for each in GLTF["nodes"]]}, "no joint that looks like"),
-    "everything in one place": ({"nodes": [{**each, "scale": [0, 0, 0]} for each in GLTF["nodes"]]}, "of no length"),
+    "everything in one place": ({"nodes": [{**each, "scale": [0, 0, 0]} for each in GLTF["nodes"]]}, "of zero length"),
     "compression": ({"extensionsRequired": ["EXT_meshopt_compression"]}, "EXT_meshopt"),
 }
 
@@ -130,7 +130,7 @@ def test_what_is_wrong_is_one_sentence(name: str) -> None:
 @pytest.mark.parametrize(
     ("data", "says"),
     [
-        (b"nothing at all, really", "no glTF binary"),
+        (b"nothing at all, really", "not a glTF binary"),
         (WALK[:-3000], "cut off"),
         (WALK[:4] + b"\1\0\0\0" + WALK[8:], "version 1"),
     ],

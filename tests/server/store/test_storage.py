@@ -91,7 +91,7 @@ def test_the_total_is_reached_and_one_s_own_runs_make_way_or_the_run_is_refused(
     theirs = {kept(notebook, "user ada", seed) for seed in range(40)}
     used = notebook.usage(Visitor("user ada", "user ada")).used
     notebook.storage.room = Quota("bytes", person=1e9, everybody=used + 3e5)
-    with pytest.raises(InputError, match="nothing of others is removed for yours"):
+    with pytest.raises(InputError, match="others' runs are not removed for yours"):
         for seed in range(40):
             notebook.favour(kept(notebook, "user eve", seed), "user eve", favourite=True)
     assert runs_of(notebook, "user ada") == theirs

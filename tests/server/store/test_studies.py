@@ -151,7 +151,7 @@ def test_what_makes_no_study_is_a_sentence_and_leaves_nothing(studies: Studies) 
     with pytest.raises(InputError, match="sign in or allow cookies"):
         new(studies, owner="")
     studies.storage.room = Quota("bytes", everybody=1)
-    with pytest.raises(InputError, match="nothing of others is removed for yours"):
+    with pytest.raises(InputError, match="others' runs are not removed for yours"):
         new(studies)
     assert studies.mine(ME) == [] and not any(studies.folder.iterdir())
 

@@ -71,9 +71,9 @@ def test_values_are_read_as_people_write_them(kind: Any, given: str, values: tup
     [
         (SEED, "1-500", "A grid has 1 to 9 cells, not 500"),
         (SEED, " ", "no values"),
-        (SEED, "1.5", "is no whole number"),
-        (DAMPING, "a lot", "is no number"),
-        (SEED, "1-" + "9" * 400, "is no whole number"),
+        (SEED, "1.5", "is not a whole number"),
+        (DAMPING, "a lot", "is not a number"),
+        (SEED, "1-" + "9" * 400, "is not a whole number"),
     ],
 )
 def test_what_makes_no_grid_is_a_sentence(kind: Any, given: str, sentence: str) -> None:

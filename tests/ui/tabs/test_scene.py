@@ -112,7 +112,7 @@ def test_words_that_were_written_are_laid_out(tab: SceneTab) -> None:
     assert written("They run.", laid | {"ahead": True}) == nothing, "the beats are newer"
     assert written("", None) == nothing
     assert written("", laid)[2] == "They meet. They hug."
-    assert "no valid TOML" in written("[[beat]]\nwords = 'x", laid)[1]
+    assert "not valid TOML" in written("[[beat]]\nwords = 'x", laid)[1]
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ class PredictRequest:
         set_(self, "motion", check_motion(self.motion))
         if "two people" in method.takes and not isinstance(self.motion, Duet):
             raise InputError(
-                f"{method.label} continues two people, and this motion is of one: choose another method, or give "
+                f"{method.label} continues two people, but this motion has only one: choose another method, or give "
                 "both people."
             )
         length = self.motion.seconds

@@ -139,7 +139,7 @@ class GenerateRequest(SamplingRequest):
 
     def _check_paths(self, method: Method) -> None:
         if not self.split or "scene" not in method.tasks:
-            raise InputError(f"{method.label} follows no path: remove the paths, or ask by a sentence.")
+            raise InputError(f"{method.label} cannot follow a path: remove the paths, or ask with a sentence.")
         given = (path if isinstance(path, FloorPath) else path_of(path) for path in self.paths)
         object.__setattr__(self, "paths", timed_paths(tuple(given), self.seconds))
 

@@ -102,9 +102,9 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"The story is no valid TOML: {_sentence(error)}") from None
+        raise InputError(f"The story is not valid TOML: {_sentence(error)}") from None
     except RecursionError:
-        raise InputError("The story is no valid TOML: its lists are nested too deeply.") from None
+        raise InputError("The story is not valid TOML: its lists are nested too deeply.") from None
     lines = Lines(text)
     _check_keys(tables, _TOP, lines, "", 0, "a story")
     for table, (known, most) in _TABLES.items():

@@ -30,7 +30,7 @@ VISITOR_COOKIE = "pasdedeux_visitor"
 KNOWN_COOKIE = "pasdedeux_known"
 YEAR = 365 * 86_400.0
 _MOST = 20_000
-_NOT_OPEN = "This server is for its own machine: its owner can make accounts or set PASDEDEUX_OPEN=1."
+_NOT_OPEN = "This server answers only its own machine: its owner can make accounts or set PASDEDEUX_OPEN=1."
 
 
 def find_visitor(settings: Settings, accounts: Accounts, scope: Scope, nobody: Visitor) -> Visitor | None:

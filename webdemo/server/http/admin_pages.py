@@ -54,7 +54,7 @@ def admin_routes(root: str, admin: Administration, accounts: Accounts) -> APIRou
         if not request.headers.get("origin"):  # the guard has compared it with the host
             raise Refused(403, "Open the page /admin in a browser, or use `python -m webdemo admin`.", "admin")
         if act not in _DONE:
-            raise Refused(422, "There is no such act: use the buttons of the page.", "admin")
+            raise Refused(422, "There is no such action: use the buttons of the page.", "admin")
         admin.suspend(name, suspended=act == "suspend")
         return RedirectResponse(f"{root}/admin?done={act}", status_code=303)
 

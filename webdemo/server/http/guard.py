@@ -176,7 +176,7 @@ class Guard:
     def _check_head(self, scope: Scope, headers: dict[bytes, bytes]) -> None:
         """Raises Refused for foreign names, and for another site's page that asks in a visitor's name."""
         if b"transfer-encoding" in headers and b"content-length" in headers:  # a proxy may take the other
-            raise Refused(400, "The request has a length and comes in pieces: send one of both.", "bad head")
+            raise Refused(400, "The request has a length but comes in pieces: choose one of the two.", "bad head")
         host = headers.get(b"host", b"").decode("latin-1").lower()
         origin = headers.get(b"origin", b"").decode("latin-1").lower()
         try:
@@ -186,7 +186,7 @@ class Guard:
         if not _HOST.fullmatch(host):
             raise Refused(400, "The request's Host is not a name.", "bad head")
         if self.hosts and name not in self.hosts:
-            raise Refused(421, "This server is not called so: set PASDEDEUX_HOSTS to the names it has.", "host")
+            raise Refused(421, "This server does not go by that name: set PASDEDEUX_HOSTS to its names.", "host")
         if scope["method"] not in _CHANGING:
             return
         elsewhere = bool(origin) and asks != host
@@ -327,5 +327,5 @@ def _sign_in_first(root: str, scope: Scope, in_browser: bool) -> Response:
         query = scope.get("query_string", b"").decode("latin-1")
         wanted = scope["path"] + (f"?{query}" if query else "")
         return RedirectResponse(f"{root}/login?next={quote(wanted, safe='')}", status_code=303)
-    sentence = "Sign in first: reload the page, or give auth=(name, password) where a program asks."
+    sentence = "Sign in first: reload the page, or pass auth=(name, password) from a program."
     return JSONResponse({"detail": sentence}, status_code=401)

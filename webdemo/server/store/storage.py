@@ -39,7 +39,7 @@ OWN_ROOM = (
     "own: stop keeping one, or delete a study."
 )
 EVERYBODYS_ROOM = (
-    "The room for everybody's runs on this server is used up, and nothing of others is removed for yours: remove runs "
+    "The room for everybody's runs on this server is used up, and others' runs are not removed for yours: remove runs "
     "of your own, or tell the person who runs the server."
 )
 ADDRESS_ROOM = "The room for runs of people from your network is used up: remove runs of your own."

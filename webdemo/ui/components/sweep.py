@@ -80,7 +80,7 @@ def read_axis(kind: Kind, given: str) -> Axis:
 def whole(given: str) -> int:
     """A whole number; raises InputError for anything else."""
     if not re.fullmatch(r"\d{1,10}", given):
-        raise InputError(f"{given[:40]!r} is no whole number: write the grid's values as 1, 2, 3 or 1-3.")
+        raise InputError(f"{given[:40]!r} is not a whole number: write the grid's values as 1, 2, 3 or 1-3.")
     return int(given)
 
 
@@ -89,7 +89,7 @@ def real(given: str) -> float:
     try:
         return float(given)
     except ValueError:
-        raise InputError(f"{given[:40]!r} is no number: write the grid's values as 0, 0.5, 1.") from None
+        raise InputError(f"{given[:40]!r} is not a number: write the grid's values as 0, 0.5, 1.") from None
 
 
 def _check(count: int) -> None:
