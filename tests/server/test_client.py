@@ -106,6 +106,11 @@ def test_the_documents_examples_run(
     said = capsys.readouterr().out
     assert str(tmp_path) in said and "Denoising: step" in said
     assert names["job"].result()[0]["manifest"]["request"]["prompt"] == "Two people hug."
+    (fetch,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "using.md").read_text(encoding="utf-8"), re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    sign_in = f'Client("{url}", auth=("ada", "password of ada"))'
+    exec(compile(fetch.replace('Client("http://127.0.0.1:7860")', sign_in), "using.md", "exec"), {})
+    assert len([*tmp_path.glob("*_a.bvh"), *tmp_path.glob("*_b.bvh")]) == 2
 
 
 def test_nobody_else_gets_in(url: str) -> None:
