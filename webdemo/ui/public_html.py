@@ -14,10 +14,8 @@ from functools import cache
 from jinja2 import Environment, FileSystemLoader
 
 from webdemo.inference.methods import label_of
-from webdemo.inference.requests.predict import PredictResult
-from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS, result_payload
-from webdemo.ui.components.prediction_view import prediction_payload
-from webdemo.ui.history import Entry, Opened
+from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
+from webdemo.ui.history import Entry
 from webdemo.ui.text.texts import TEXTS, TEXTS_JS, say
 from webdemo.ui.theme import COLOURS
 from webdemo.view.payload import Payload
@@ -45,12 +43,6 @@ class Place:
 
     files: str
     embed: str = ""
-
-
-def payload_of(opened: Opened) -> Payload:
-    """The player's value for a result, whose title is on the page around it."""
-    result = opened.result
-    return prediction_payload(result) if isinstance(result, PredictResult) else result_payload(result)
 
 
 def caption(entry: Entry) -> str:

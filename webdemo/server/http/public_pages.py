@@ -12,8 +12,9 @@ from starlette.responses import FileResponse, HTMLResponse, Response
 
 from webdemo.server.settings import Settings
 from webdemo.server.store.sharing import Sharing
+from webdemo.ui.components.prediction_view import payload_of
 from webdemo.ui.history import Entry
-from webdemo.ui.public_html import FILES, Place, embed_html, payload_of, player_html
+from webdemo.ui.public_html import FILES, Place, embed_html, player_html
 from webdemo.ui.visitor import visitor_of
 from webdemo.view.payload import Payload
 
@@ -32,7 +33,7 @@ def public_routes(settings: Settings, history: Sharing) -> APIRouter:
     def read(key: str) -> tuple[Entry, Payload, float]:
         """The run that a page shows, its motion, and when the page ends."""
         opened, until = history.open_page(key)
-        return opened.entry, payload_of(opened), until
+        return opened.entry, payload_of(opened.result), until
 
     @router.get("/share/{key}")
     def share(key: str, request: Request) -> Response:

@@ -10,11 +10,18 @@ import numpy as np
 from motion import Clip, Duet, stacked_positions
 from motion.vectors import Array
 from webdemo.inference.requests.predict import PredictResult, with_people
+from webdemo.inference.run import Result
 from webdemo.view.payload import Curve, Payload, build_payload, sample_payload
 
-from .player import with_shown_roles
+from .player import result_payload, with_shown_roles
 
 _NO_TRUTH = "The recording ends here, so there is nothing to compare with."
+
+
+def payload_of(result: Result, *, title: str = "") -> Payload:
+    """The player's value for any result."""
+    made = prediction_payload if isinstance(result, PredictResult) else result_payload
+    return made(result, title=title)
 
 
 def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:

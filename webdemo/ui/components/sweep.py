@@ -10,14 +10,12 @@ from typing import Any
 
 from motion import InputError
 from motion.metrics import MEASURES
-from webdemo.inference.requests.predict import PredictResult
 from webdemo.inference.run import Result
 from webdemo.ui.text.panels import sides, table
 from webdemo.ui.text.words import number, text
 from webdemo.view.payload import Payload, build_payload, grid_sample
 
-from .player import result_payload
-from .prediction_view import prediction_payload
+from .prediction_view import payload_of
 
 MOST = 9
 """Cells of a grid."""
@@ -142,15 +140,11 @@ def loose(cells: list[dict[str, Any]], names: list[str]) -> Grid:
 
 def grid_payload(grid: Grid, results: Sequence[Result], *, title: str = "") -> Payload:
     """The player's value for the first sample of every cell's result, in the grid's order."""
-    cells = [{**_first_sample(result), "caption": name} for result, name in zip(results, grid.names, strict=True)]
+    cells = [
+        {**payload_of(result)["samples"][0], "caption": name} for result, name in zip(results, grid.names, strict=True)
+    ]
     whole_grid = grid_sample(cells, grid.columns, grid.rows)
     return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=title)
-
-
-def _first_sample(result: Result) -> dict[str, Any]:
-    """The player's value for the first sample; a prediction with its past and what really followed."""
-    payload = prediction_payload(result) if isinstance(result, PredictResult) else result_payload(result)
-    return payload["samples"][0]
 
 
 def read_outs(results: Mapping[str, Result]) -> dict[str, Mapping[str, float]]:

@@ -20,7 +20,8 @@ from motion import InputError
 from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.ui.components.exports import Record
-from webdemo.ui.components.player import busy, result_payload, show
+from webdemo.ui.components.player import busy, show
+from webdemo.ui.components.prediction_view import payload_of
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened
 from webdemo.ui.text.panels import effect_line, made_line, notes_lines, readout_panel, status
@@ -347,7 +348,7 @@ class JobTab(ABC):
         """Updates that show a result, by the names of the outputs."""
         record = Record(result, title)
         return {
-            "player": show(result_payload(result, title=title)),
+            "player": show(payload_of(result, title=title)),
             "line": status(made_line(result), tone="done") + notes_lines(result),
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),

@@ -17,8 +17,7 @@ from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictReq
 from webdemo.inference.run import Result
 from webdemo.ui.components.actors import Source, offered_animations
 from webdemo.ui.components.fields import FittedSlider, looked_up, method_list, slider
-from webdemo.ui.components.player import show
-from webdemo.ui.components.prediction_view import error_lines, prediction_payload, without_name
+from webdemo.ui.components.prediction_view import error_lines, without_name
 from webdemo.ui.components.sweep import Kind, grid_table, real
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
@@ -233,11 +232,7 @@ class PredictTab(JobTab):
         shown = super().shown(result, title)
         if not isinstance(result, PredictResult):  # of a history that did not keep what followed
             return shown
-        return {
-            **shown,
-            "player": show(prediction_payload(result, title=title)),
-            "readouts": prediction_lines({"": error_lines(result)[0]}) + str(shown["readouts"]),
-        }
+        return {**shown, "readouts": prediction_lines({"": error_lines(result)[0]}) + str(shown["readouts"])}
 
 
 def _found_line(source: Source) -> str:
