@@ -42,7 +42,8 @@ def stub_module() -> ModuleType:
     return sys.modules[name]
 
 
-if __name__ == "__main__":
+def serve(port: int, data: str) -> None:
+    """Serves until the process ends."""
     from webdemo.server.http import exchange
     from webdemo.server.logs import set_up_logs
     from webdemo.server.serve import make_server
@@ -51,6 +52,20 @@ if __name__ == "__main__":
     exchange.BACK_OFF = 0.0  # no test waits for a refusal
     pause, partner = (float(os.environ.get(name, "0")) for name in ("STUB_PAUSE", "STUB_PARTNER"))
     engine = stub_module().StubEngine(pause=pause, partner_pause=partner)
-    settings = read_settings(port=int(sys.argv[1]), data=sys.argv[2])
+    settings = read_settings(port=port, data=data)
     set_up_logs(settings.log_level, content=settings.log_content)
     make_server(settings, engine=engine, scratch=True).run()
+
+
+def serve_apart(port: int, data: str, log: str, environment: dict[str, str]) -> None:
+    """Serves in a process that was forked from one in which :mod:`tests.server.ready` is imported."""
+    os.environ.clear()
+    os.environ.update(environment)
+    written = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    for output in (1, 2):
+        os.dup2(written, output)
+    serve(port, data)
+
+
+if __name__ == "__main__":
+    serve(int(sys.argv[1]), sys.argv[2])

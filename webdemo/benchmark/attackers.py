@@ -35,7 +35,9 @@ UNREAD = 100
 READING_EVERY = 0.25
 """Seconds between two texts of the greatest length."""
 LARGE = 2
-"""Files at a time, of the most markers and frames that are read."""
+"""Files at a time, of many markers and as many frames as an upload may have."""
+FRAMES = 24_000
+"""Of each of them: 48 MB."""
 _HANDS = ROOT / "static" / "examples" / "shake-hands.npz"
 _WAVE = ROOT / "static" / "examples" / "wave.npz"
 
@@ -165,7 +167,7 @@ async def _read_nothing(client: httpx.AsyncClient, counts: Counter[str]) -> None
 
 async def _send_large(client: httpx.AsyncClient, counts: Counter[str]) -> None:
     """Sends large recordings of markers for reactions, several at once."""
-    data = _large_trc()
+    data = large_trc()
 
     async def one() -> None:
         while True:
@@ -184,8 +186,8 @@ async def _send_large(client: httpx.AsyncClient, counts: Counter[str]) -> None:
     await asyncio.gather(*(one() for _ in range(LARGE)))
 
 
-def _large_trc() -> bytes:
-    """Markers of a still body and 160 points beside it, in 30,000 frames."""
+def large_trc() -> bytes:
+    """Markers of a still body and 160 points beside it, in :data:`FRAMES` frames."""
     pose = read_actor(_WAVE, person="a")[0]
     parts = {"hip": "Hip", "knee": "Knee", "ankle": "Ankle", "shoulder": "Shoulder", "elbow": "Elbow", "wrist": "Wrist"}
     joints = dict(zip(pose.skeleton.joint_names, pose.positions[0], strict=True))
@@ -198,7 +200,7 @@ def _large_trc() -> bytes:
     places = [*points.values(), *[np.ones(3)] * 160]
     head = (
         "PathFileType\t4\t(X/Y/Z)\tlarge.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n"
-        f"60\t60\t30000\t{len(names)}\tm\nFrame#\tTime\t" + "\t\t\t".join(names) + "\t\t\n\t\t\n"
+        f"60\t60\t{FRAMES}\t{len(names)}\tm\nFrame#\tTime\t" + "\t\t\t".join(names) + "\t\t\n\t\t\n"
     )
     row = "1\t0\t" + "\t".join(f"{value:.1f}" for place in places for value in place) + "\n"
-    return (head + row * 30_000).encode()
+    return (head + row * FRAMES).encode()

@@ -10,10 +10,8 @@ import hashlib
 import logging
 from contextvars import ContextVar
 
-from gradio.context import LocalContext
-
 from webdemo.server.logs import REFERENCE
-from webdemo.ui.visitor import visitor
+from webdemo.ui.visitor import request_of_event, visitor
 
 log = logging.getLogger(__name__)
 
@@ -46,8 +44,7 @@ def fingerprint(secret: str) -> str:
 
 def _sender() -> tuple[str, str, str]:
     """The person, the address and the id of the request that this thread answers."""
-    event = LocalContext.request.get(None)
-    client = getattr(getattr(event, "request", None), "client", None)  # an event of the page, perhaps in a queue
+    client = getattr(request_of_event(), "client", None)  # of an event of the page, perhaps in a queue
     if client is None:
         return *SENDER.get(), REFERENCE.get()
     who = visitor()

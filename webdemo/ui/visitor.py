@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
+from typing import Any
 
-from gradio.context import LocalContext
 from starlette.requests import Request
 
 
@@ -34,10 +35,15 @@ LOCAL = Visitor()
 """The user of a page that runs without the server."""
 
 
+def request_of_event() -> Any:
+    """The request of the event that this thread answers; None elsewhere, as in the shell, which needs no Gradio."""
+    context = sys.modules.get("gradio.context")
+    return getattr(context and context.LocalContext.request.get(None), "request", None)
+
+
 def visitor() -> Visitor:
     """The visitor whose event is being answered in this thread."""
-    event = LocalContext.request.get(None)
-    request = getattr(event, "request", None)
+    request = request_of_event()
     return LOCAL if request is None else visitor_of(request)
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import os
 import secrets
 import socket
 import sqlite3
-import subprocess
-import sys
 import time
 import zipfile
 from contextlib import closing
@@ -22,8 +21,10 @@ import httpx
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
 
-from ..lab import ROOT, add_accounts
+from ..lab import add_accounts, serve_apart
 
+_READY = multiprocessing.get_context("forkserver")
+_READY.set_forkserver_preload(["tests.server.ready"])
 CANARY = "the canary that nobody may read"
 
 
@@ -55,18 +56,13 @@ class Target:
         self._clients: dict[str, httpx.Client] = {}
 
     def __enter__(self) -> Target:
-        script = str(ROOT / "tests" / "server" / "lab.py")
-        with open(self.folder / "log", "w") as log:
-            self.process = subprocess.Popen(
-                [sys.executable, script, str(self.port), str(self.data)],
-                cwd=ROOT,
-                env={**os.environ, "OMP_NUM_THREADS": "1", "STUB_PAUSE": str(self.stub_pause), **self.env},
-                stdout=log,
-                stderr=subprocess.STDOUT,
-            )
+        environment = {**os.environ, "OMP_NUM_THREADS": "1", "STUB_PAUSE": str(self.stub_pause), **self.env}
+        given = (self.port, str(self.data), str(self.folder / "log"), environment)
+        self.process = _READY.Process(target=serve_apart, args=given, daemon=True)
+        self.process.start()
         until = time.monotonic() + 240
         while not self.healthy():
-            assert self.process.poll() is None, self.log()
+            assert self.process.is_alive(), self.log()
             assert time.monotonic() < until, self.log()
             time.sleep(0.1)
         return self
@@ -75,7 +71,7 @@ class Target:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.process.kill()
-        self.process.wait()
+        self.process.join()
 
     def log(self) -> str:
         """What the server wrote so far."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from gradio.components import Component
+from gradio.components import Component, Slider
 from pydantic import ValidationError
 
 from webdemo.ui.components.accepts import accepts, accepts_event
@@ -31,10 +31,13 @@ WRONG: tuple[Any, ...] = (
 )
 """Of a type, size or meaning that hardly a component is sent."""
 
+LENGTH = "length of the motion in seconds"
+
 
 def usual(component: Component) -> Any:
-    """What the page would send for a component that nobody touched."""
-    value = getattr(component, "value", None)
+    """What the page would send for a component that nobody touched; lengths are short, as all formats are written."""
+    long = isinstance(component, Slider) or LENGTH in (component.label or "")
+    value = (getattr(component, "minimum", None) or 1) if long else getattr(component, "value", None)
     try:
         accepts(component).validate_python(value)
     except ValidationError:

@@ -240,6 +240,25 @@ def test_several_workers_of_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
     assert all(isinstance(end, Result) for end in people.ends.values())
 
 
+def test_a_long_run_keeps_no_much_shorter_one_waiting(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One run of the greatest length and number kept everybody else's waiting for minutes."""
+    gate, people = make(monkeypatch)
+    people.ask("eve", request("long", steps=1000))
+    people.ask("mallory", request("nearly as long", steps=400))
+    people.ask("eve", request("her own"))
+    people.ask("ada", request("short"))
+    time.sleep(0.1)
+    assert gate.order == ["long"], "nobody passes one that has just begun"
+    people.queue._running[0].started -= 2 * line.PATIENCE
+    wait_for(lambda: people.queue.running == 2)
+    people.ask("bob", request("another"))
+    time.sleep(0.1)
+    assert gate.order == ["long", "short"], "one passes at a time, of another person's, and much shorter"
+    gate.open.release(5)
+    people.end()
+    assert all(isinstance(end, Result) for end in people.ends.values())
+
+
 def test_the_engine_that_settings_name(monkeypatch: pytest.MonkeyPatch) -> None:
     assert isinstance(engine_of(Settings()), Engine)
     monkeypatch.setattr(ray_engine, "find_spec", lambda name: None)

@@ -1,6 +1,7 @@
 """The run queue: the person served least goes first.
 
-Runs of one model group go to one worker; :mod:`webdemo.server.queue.turns` decides the order.
+Runs of one model group go to one worker; :mod:`webdemo.server.queue.turns` decides the order. Where a run takes long, a
+spare worker does much shorter ones of other people beside it.
 """
 
 from __future__ import annotations
@@ -24,6 +25,10 @@ from .turns import Accounts, Job, Pace, in_turn, next_job, units
 
 TICK = 0.5
 """Seconds between two updates of the place in the queue."""
+PATIENCE = 5.0
+"""Seconds after which a run takes long."""
+SHORTER = 8.0
+"""Times as much work as a run that is much shorter has a long one; the largest takes minutes, a usual one seconds."""
 MAX_GROUPS = 8
 """Model groups with workers of their own; further ones share them."""
 
@@ -177,7 +182,7 @@ class FairQueue:
             name = min(self._workers)
         if name not in self._workers:
             self._workers.add(name)
-            for _ in range(self.workers):
+            for _ in range(self.workers + 1):
                 threading.Thread(target=self._work, args=(name,), name=f"worker {name}", daemon=True).start()
         return name
 
@@ -221,7 +226,7 @@ class FairQueue:
                 while (job := self._next(group)) is None:
                     if self._stopping:
                         return
-                    self._change.wait()
+                    self._change.wait(TICK if self._waiting else None)
                 self._waiting.remove(job)
                 self._accounts.charge(job.person, job.cost)
                 job.started = job.moved = time.monotonic()
@@ -241,6 +246,11 @@ class FairQueue:
     def _next(self, group: str) -> Job | None:
         self._waiting = [job for job in self._waiting if not job.token.cancelled]
         mine = [job for job in self._waiting if job.group == group]
+        busy = [job for job in self._running if job.group == group]
+        if len(busy) >= self.workers:
+            work, people = min(job.cost for job in busy) / SHORTER, {job.person for job in busy}
+            late = len(busy) == self.workers and time.monotonic() - max(job.started for job in busy) > PATIENCE
+            mine = [job for job in mine if late and job.cost <= work and job.person not in people]
         return next_job(mine, self._accounts.served, self._running, self.most_running)
 
     def _run(self, job: Job) -> bool:
