@@ -43,6 +43,23 @@ def test_a_body_in_tiny_pieces_is_cut_off(served: tuple[str, int], path: str) ->
     wait_for(lambda: answers(served))
 
 
+def test_few_large_bodies_come_at_a_time(served: tuple[str, int]) -> None:
+    """390 of 2 MB, held before their ends, took 700 MB."""
+    head = f"POST {JOIN} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: {2**20}\r\nConnection: close\r\n\r\n".encode()
+    with ExitStack() as held:
+        slow = [held.enter_context(connect(served)) for _ in range(4)]
+        for one in slow:
+            one.sendall(head)
+        with connect(served) as fifth:
+            fifth.sendall(head)
+            said = read_all(fifth)
+            assert said.startswith(b"HTTP/1.1 422") and b"You already have 4 large requests" in said
+        assert all(read_all(one).startswith(b"HTTP/1.1 408") for one in slow)
+    with connect(served) as one:
+        one.sendall(head)
+        assert read_all(one).startswith(b"HTTP/1.1 408"), "there is a place again"
+
+
 elsewhere = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="has one loopback address")
 """Comes from other addresses of this machine."""
 

@@ -82,6 +82,7 @@ class Quotas:
         requests, address_requests: a minute, of those that change something, for a person and for an address.
         gets, address_gets: a minute, of the others.
         events: unfinished events of the page: runs, films, files that are read.
+        large: requests of a size that many of them together would fill the memory.
         waiting: runs in the queue.
         live: live streams.
         room: bytes that are stored. A person's is for runs, studies, uploads and downloads, that of an address and of
@@ -96,6 +97,7 @@ class Quotas:
         self.requests, self.address_requests = RateLimit(settings.rate), RateLimit(settings.rate * people)
         self.gets, self.address_gets = RateLimit(gets), RateLimit(gets * people)
         self.events = Quota("unfinished tasks", settings.events, near, 2 * max(near, settings.queue) + 64)
+        self.large = Quota("large requests on their way", 4, 4 * people, 64)
         self.waiting = Quota("runs waiting", settings.waiting, settings.waiting * people, settings.queue)
         self.live = Quota("live streams", 1, max(1, settings.live // 2), settings.live)
         self.room = Quota("bytes", own, min(people * own, ADDRESS_SHARE * total), total)
@@ -173,5 +175,4 @@ def network_of(address: str) -> str:
         return str(found)
     if found.ipv4_mapped is not None:
         return str(found.ipv4_mapped)
-    host_bits = 128 - PREFIX
-    return f"{ipaddress.IPv6Address(int(found) >> host_bits << host_bits)}/{PREFIX}"
+    return str(ipaddress.ip_network((found, PREFIX), strict=False))

@@ -16,7 +16,7 @@ from starlette.types import Message, Receive, Scope, Send
 from webdemo.server.settings import on_a_space
 
 from .error_pages import message_card
-from .routes import Refused, is_embed, is_public_page, is_upload
+from .routes import NOTHING, Refused, is_embed, is_public_page, is_upload
 
 _FROM_HERE = (
     "default-src 'none'",
@@ -105,7 +105,7 @@ class Exchange:
         if self.body is not None and self.body.refused is not None:
             raise self.body.refused
         if self._held and self._held[0]["status"] == 404:
-            raise Refused(404, "There is nothing here.", "not found")
+            raise Refused(404, NOTHING, "not found")
         if self._held and self._held[0]["status"] in (400, 413):
             raise Refused(400, BAD_UPLOAD, "bad body")
         if self._held and _is_sentence(self._held):

@@ -53,6 +53,8 @@ _DEAR_WEIGHT = 10.0
 _BY_A_BAD_FORM = (AttributeError, LookupError, TypeError, ValueError)
 """What Gradio raises over a form that is none."""
 _HOST = re.compile(r"[a-z0-9._\[\]:-]*+")
+_LARGE = 2**18
+"""Bytes of a body above which it needs one of the places for large ones until it is answered."""
 _MOST_FIELDS = 50
 """Parameters of an address."""
 _MOST_VALUES = 20_000
@@ -71,6 +73,7 @@ class Guard:
     def __init__(self, app: ASGIApp, *, lab: Lab, payloads: Payloads) -> None:
         self.app, self.lab, self.payloads = app, lab, payloads
         self.settings, self.quotas, self.figures, self.bindings = lab.settings, lab.quotas, lab.figures, lab.bindings
+        self._large: dict[Exchange, tuple[str, str]] = {}
         self.hosts = {name.lower() for name in lab.settings.hosts}
         if self.hosts or lab.settings.local:  # its own health check, and tunnels to it, name the loopback
             self.hosts |= {"localhost", "127.0.0.1", "::1"}
@@ -99,6 +102,7 @@ class Guard:
         except Exception as error:
             await exchange.refuse(self._refusal_of(error, exchange))
         finally:
+            self._large.pop(exchange, None)
             self._note(exchange, scope)
 
     async def _pass(self, exchange: Exchange, scope: Scope, receive: Receive) -> None:
@@ -109,7 +113,7 @@ class Guard:
             await exchange.respond(_sign_in_first(self.settings.root_path, scope, exchange.in_browser))
             return
         if scope["method"] in _CHANGING:
-            exchange.body = await self._body(scope, exchange.headers, receive, visitor)
+            exchange.body = await self._body(scope, exchange, receive, visitor)
         else:
             self._check_names(scope, visitor.person)
         if (
@@ -247,15 +251,18 @@ class Guard:
             return 1.0
         return 1.0 + (declared if b"content-length" in headers else most) / 2**20
 
-    async def _body(self, scope: Scope, headers: dict[bytes, bytes], receive: Receive, visitor: Visitor) -> BoundedBody:
+    async def _body(self, scope: Scope, exchange: Exchange, receive: Receive, visitor: Visitor) -> BoundedBody:
         """The body of a request that may have one, checked where it is a call of the page's."""
-        path, declared = scope["path"], declared_length(headers)
+        path, declared = scope["path"], declared_length(exchange.headers)
         most = self._most(path)
         if declared > most:
             raise too_large(most)
+        size = most if b"transfer-encoding" in exchange.headers else declared
         if is_upload(path):
-            size = declared if b"content-length" in headers else most
             await self._make_room(visitor, size)
+        elif size > _LARGE:
+            self.quotas.large.check(visitor.person, visitor.address, self._large.values())
+            self._large[exchange] = (visitor.person, visitor.address)
         body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds)
         if not is_upload(path) and path.startswith(API):
             self._check_call(await body.whole(), visitor.person, path)

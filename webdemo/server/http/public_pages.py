@@ -18,11 +18,10 @@ from webdemo.ui.public_html import FILES, Place, embed_html, player_html
 from webdemo.ui.visitor import visitor_of
 from webdemo.view.payload import Payload
 
-from .routes import Refused
+from .routes import NOTHING, Refused
 
 _FILE_HEADERS = {"Cache-Control": "public, max-age=600", "Access-Control-Allow-Origin": "*"}
 """A frame with a sandbox has no origin of its own, and the files are the same for everybody."""
-_NOTHING = "There is nothing here."
 
 
 def public_routes(settings: Settings, history: Sharing) -> APIRouter:
@@ -49,7 +48,7 @@ def public_routes(settings: Settings, history: Sharing) -> APIRouter:
     @router.get("/shown/{name:path}")
     def file(name: str) -> Response:
         if name not in FILES:
-            raise Refused(404, _NOTHING, "not found")
+            raise Refused(404, NOTHING, "not found")
         return FileResponse(FILES[name], headers=_FILE_HEADERS)
 
     return router

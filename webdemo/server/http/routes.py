@@ -20,7 +20,7 @@ _CLOSED = re.compile(
 )
 """Gradio's routes that this page does not use: proxies, code editing, monitoring, other hosts' files."""
 _LONGEST_URL = 4096
-_NOTHING = "There is nothing here."
+NOTHING = "There is nothing here."
 
 
 def path_below(root: str, path: str, query: bytes) -> str:
@@ -30,9 +30,9 @@ def path_below(root: str, path: str, query: bytes) -> str:
     if root and (path == root or path.startswith(f"{root}/")):
         path = path[len(root) :] or "/"
     if "\0" in path or "\\" in path or "//" in path or ".." in path.split("/") or not path.isprintable():
-        raise Refused(404, _NOTHING, "bad path")
+        raise Refused(404, NOTHING, "bad path")
     if _CLOSED.match(path):
-        raise Refused(404, _NOTHING, "closed")
+        raise Refused(404, NOTHING, "closed")
     return path
 
 
