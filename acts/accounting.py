@@ -159,6 +159,7 @@ def shown_caption(act: Act, entry: Entry) -> str:
     """The caption in whose words the verdict on an act is given: one with the act's own verb where there is one."""
     usual, own = naming(act, entry), f"[{act.act.split('-')[0]}]"
     alike = (text for text in entry.caption if own in text and _slots(text) == _slots(usual))
+    alike = (text for text in alike if act.thing or not text.endswith("something"))
     return usual if own in usual else next(alike, usual)
 
 
@@ -229,7 +230,7 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return False  # "buttons his coat" is not "buttons a coat"
     if text == "own":
         return act.patient is None or act.part_of in act.agents
-    if _is_target(token) and "{b}" in shown_caption(act, entry):
+    if _is_target(token) and any(slot in shown_caption(act, entry) for slot in ("{b}", "{a+b}")):
         return not any(c.lower_.endswith(("self", "selves")) for c in token.children)
     if any(forms & each for each in (said_words(entry.caption), set(" ".join(act.manner).split()))):
         return True

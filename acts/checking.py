@@ -3,7 +3,7 @@
 A rule is a condition of :mod:`motion.metrics.sentences` in which these names stand for an act's own values: ``who`` is
 its agent and ``whom`` the other; ``side`` and ``way`` are "any" and ``part`` (of the body) is "body" where the words
 name none; ``n`` is how often, 1 where they do not say, and ``times(…, n)`` asks for no
-more where they do.
+more where they do; ``metres`` is how far apart.
 """
 
 from __future__ import annotations
@@ -251,7 +251,8 @@ def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
     part = part if part in BODY else "body"
     part = f"{act.part_side} {part}" if act.part_side else part
     way = WAYS.get(act.direction or "", "any")
-    values = {"side": act.side or "any", "part": part, "way": way}
+    values: dict[str, Any] = {"side": act.side or "any", "part": part, "way": way}
+    values |= {"metres": 0.7 * act.distance} if act.distance else {}
     return [cast(rule, who, whom, **values, n=act.times or 1, counted=bool(act.times)) for rule in entry.rule]
 
 
@@ -266,6 +267,7 @@ def cast(
     way: str = "any",
     n: int = 1,
     counted: bool = False,
+    metres: float = 1.2,
 ) -> str:
     """A rule of the lexicon with an act's own values in the place of their names.
 
@@ -278,6 +280,7 @@ def cast(
         way: "forward", "back", "left", "right" or "any".
         n: how often.
         counted: the words say how often, so that ``times(…, n)`` is "exactly".
+        metres: how far apart at least.
     """
     values: dict[str, ast.expr] = {
         "who": ast.Name(who),
@@ -286,6 +289,7 @@ def cast(
         "part": ast.Constant(part),
         "way": ast.Constant(way),
         "n": ast.Constant(n),
+        "metres": ast.Constant(metres),
     }
 
     class Cast(ast.NodeTransformer):
@@ -318,10 +322,12 @@ def _words(act: Act, entry: Entry | None) -> str:
     text = worded(*with_thing(act, caption))
     for person, name in (("person A", "A"), ("person B", "B")):
         text = text.replace(person, name)
-    if act.side == "both":
-        text = text.replace(" a hand ", " both hands ")
+    if act.side is not None and " a hand " in text:
+        text = text.replace(" a hand ", " both hands " if act.side == "both" else f" the {act.side} hand ")
     elif act.side not in (None, act.direction, *text.split()) and "side" in "".join(entry.rule):
         text += by_limb(act, caption)
+    if act.direction in ("left", "right") and act.direction not in text.split():
+        text += f" to the {act.direction}"
     pace = "slowly" if act.speed < 0.7 else "quickly" * (act.speed > 1.4)
     if pace and pace not in text and set(act.manner) <= {ON_TIPTOE}:
         text += f" {pace}"

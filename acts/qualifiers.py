@@ -57,10 +57,9 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     if abs(act.speed - 1.0) > 0.3:  # who strolls walks
         yield "how fast", _at_speed(act.speed, goes, who) if goes else ""
     if act.distance is not None:
-        yield (
-            "how far",
-            f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))" * bool(goes),
-        )
+        near = f"happens(near({1.3 * act.distance + 0.2:.2f}), 1)" if "metres" in names else ""
+        way = f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))"
+        yield "how far", way if goes else near
     if act.seconds is not None:
         yield "how long", ""
     if FROM_BEHIND in act.manner:

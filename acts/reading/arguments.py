@@ -11,7 +11,7 @@ from acts.frames import Event, Ref
 from . import wordnet
 from .people import Cast, states_of
 from .subjects import reference
-from .syntax import adverb_of, is_adverb, is_kept, taken_away
+from .syntax import adverb_of, has, is_adverb, is_kept, taken_away
 from .vocabulary import closed, is_act, vocabulary
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Arguments:
                 continue
             if child.i in self._postures and child.dep_ in ("prt", "advmod"):  # "stands with shoulders up"
                 continue
-            bare = all(c.dep_ not in ("poss", "det") for c in child.children)
+            bare = not has(child, "poss", "det")
             if child.dep_ == "aux" and child.lower_ in ("come", "comes", "came"):  # "comes running"
                 event.words.append("come")
             elif (
@@ -76,9 +76,7 @@ class Arguments:
                 if agent is not None and agent.kind == "part":  # "is pulled by the elbow"
                     event.prepositions.append(("by", agent))
                     agent = None
-            elif child.dep_ in ("prep", "dative") or (
-                child.dep_ == "prt" and any(c.dep_ == "pobj" for c in child.children)
-            ):
+            elif child.dep_ in ("prep", "dative") or (child.dep_ == "prt" and has(child, "pobj")):
                 self._preposition(child, who, event)
             elif child.dep_ in ("ccomp", "xcomp", "advcl", "oprd") and child.pos_ in ("ADP", "ADV"):
                 for noun in child.children:  # "lifts the second person up", where "up" became a clause
@@ -112,7 +110,7 @@ class Arguments:
 
     def _is_measure(self, noun: Token, event: Event) -> bool:
         lemma = noun.lemma_.lower()
-        lasts = lemma in self._words.seconds and any(c.dep_ == "nummod" for c in noun.children)
+        lasts = lemma in self._words.seconds and has(noun, "nummod")
         return (lemma in closed("lengths") or lasts) and event.lemma not in self._words.verbs["light"]
 
     def _way(self, noun: Token, event: Event) -> str:
@@ -311,7 +309,7 @@ class Arguments:
             return
         if text in closed("denials") or token.dep_ == "neg":
             return
-        if lemma == "time" and (token.dep_ == "npadvmod" or any(c.dep_ == "nummod" for c in token.children)):
+        if lemma == "time" and (token.dep_ == "npadvmod" or has(token, "nummod")):
             event.times = int(self._amount(token, 0.0)) or event.times  # "this time" is no number
             return
         if token.dep_ == "npadvmod" and self._is_length(token):

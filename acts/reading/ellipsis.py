@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from acts.frames import PREPOSITIONS
 
 from .people import A_NAME, B_NAME
-from .syntax import is_adverb
+from .syntax import has, is_adverb
 from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
@@ -283,7 +283,7 @@ def _behind(preposition: Token) -> Absolute | None:
 def _acts_alone(preposition: Token) -> bool:
     """True if the verb has no object: what touches somebody "with a hand on the back" touches the back."""
     verb = next((t for t in preposition.ancestors if t.pos_ in ("VERB", "AUX")), None)
-    return verb is None or all(child.dep_ not in ("dobj", "nsubjpass") for child in verb.children)
+    return verb is None or not has(verb, "dobj", "nsubjpass")
 
 
 def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], bool], i: int) -> bool:

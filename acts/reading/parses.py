@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from . import wordnet
 from .people import A_NAME, B_NAME
 from .spelling import Speller, others
-from .syntax import parse
+from .syntax import has, parse
 from .vocabulary import closed, vocabulary
 from .wording import Text, prepared
 
@@ -119,7 +119,7 @@ def breaks(doc: Doc, lemmas: Mapping[int, str]) -> Iterator[Token]:
             before, below = None, False
         elif token.pos_ == "SCONJ" or token.tag_ in ("WRB", "WP", "WDT") or token.dep_ == "mark":
             below = True
-        elif (token.tag_ in _FINITE and token.pos_ == "VERB") or any(c.dep_ == "nsubj" for c in token.children):
+        elif (token.tag_ in _FINITE and token.pos_ == "VERB") or has(token, "nsubj"):
             if (
                 token.tag_ in _FINITE
                 and before is not None

@@ -14,7 +14,7 @@ from .arguments import Arguments
 from .ellipsis import Absolute, absolutes
 from .people import A_NAME, B_NAME, Cast
 from .subjects import Subjects, give_roles, goes_on, is_passive, names_one, reference, state_of
-from .syntax import ClauseTree, is_ongoing, seems, tells_on
+from .syntax import ClauseTree, has, is_ongoing, seems, tells_on
 from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
@@ -212,7 +212,7 @@ class Reader:
     def _gapped(self, token: Token) -> None:
         """Adds the clause whose verb is left out: "A waves with the right hand and B with the left"."""
         ref = reference(token, self.cast, "")
-        if ref.kind != "person" or all(child.dep_ not in ("prep", "dobj") for child in token.children):
+        if ref.kind != "person" or not has(token, "prep", "dobj"):
             self.cast.seen.pop(token.i, None)
             return
         before = self.events[self._of[token.head.i]]
@@ -240,9 +240,7 @@ class Reader:
 
     def _polarity(self, token: Token, head: Token | None, event: Event) -> None:
         children = {child.lower_ for child in token.children if child.dep_ in ("neg", "det", "preconj", "advmod", "cc")}
-        event.denied = any(child.dep_ == "neg" for child in token.children) or bool(
-            children & {"never", "hardly", "barely"}
-        )
+        event.denied = has(token, "neg") or bool(children & {"never", "hardly", "barely"})
         if event.subject is not None and event.subject.lemma in ("nobody", "neither", "none", "noone"):
             event.denied = True
         for child in token.children:
@@ -282,7 +280,7 @@ class Reader:
         if head is None or not (asked or token.dep_ in ("xcomp", "ccomp", "pcomp", "advcl")):
             if head is not None and token.dep_ == "conj":
                 above = self._event_of(head)
-                own = any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
+                own = has(token, "nsubj", "nsubjpass")
                 if above is not None and not own and above.denied and token.head.i == head.i:
                     event.denied = event.denied or any(c.lower_ == "or" for c in head.children)
                 below = head.dep_ in ("xcomp", "ccomp") or token.tag_ in ("VB", "VBG")
@@ -300,7 +298,7 @@ class Reader:
                 event.modality = kind
                 event.denied = event.denied or above.denied
         if above.lemma in verbs["not"]:
-            named = any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)  # "refuses what he holds out"
+            named = has(token, "nsubj", "nsubjpass")  # "refuses what he holds out"
             event.denied = event.denied if named else not above.denied
         elif above.lemma in verbs["begins"] | verbs["causes"]:
             event.denied = event.denied or above.denied

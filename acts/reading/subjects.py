@@ -11,7 +11,7 @@ from acts.lexicon import Lexicon, is_fixture
 from acts.plan import other_of
 
 from .people import A_NAME, ANYONE, B_NAME, PRONOUN_SEX, Cast, begins_clause
-from .syntax import ClauseTree, is_finite
+from .syntax import ClauseTree, has, is_finite
 from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def names_one(doc: Doc) -> bool:
 def _is_of_thing(token: Token) -> bool:
     """True for a word of company that says of a thing which one it is: "another ball", "the other hand"."""
     noun, words = token.head.lemma_.lower(), vocabulary()
-    counted = token.lower_ == "another" and any(c.dep_ == "nummod" for c in token.head.children)
+    counted = token.lower_ == "another" and has(token.head, "nummod")
     if token.dep_ in ("poss", "ROOT") or (token.head.tag_ != "NN" and not counted):  # "the other hands him a cup"
         return False
     if token.lower_ == "another":
@@ -146,9 +146,9 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
         return Ref("person", who, lemma, first=first, last=last)
     if len(cast.third) > thirds:
         return Ref("third", "", lemma, first=first, last=last)
-    owner = cast.owner(token, subject) if any(c.dep_ == "poss" for c in token.children) else ""
+    owner = cast.owner(token, subject) if has(token, "poss") else ""
     owner = "ab" if owner == "each" else owner
-    bare = token.tag_ == "NN" and all(c.dep_ not in ("det", "poss", "nummod", "predet") for c in token.children)
+    bare = token.tag_ == "NN" and not has(token, "det", "poss", "nummod", "predet")
     return Ref("thing", owner, lemma, place=lemma in words.places, bare=bare, first=first, last=last)
 
 
@@ -160,8 +160,8 @@ _OPENS = frozenset((".", ";", ":", "!", "?", ",", "and", "then"))
 def ends_before(noun: Token, verb: Token) -> bool:
     """True for a noun that the parser joined to what stands before, and whose phrase ends where a verb begins."""
     joined = noun.dep_ == "conj" and noun.tag_ == "NN" and noun.right_edge.i == verb.i - 1
-    own = any(child.dep_ in ("nsubj", "nsubjpass") for child in verb.children)
-    return joined and not own and any(child.dep_ == "det" for child in noun.children)
+    own = has(verb, "nsubj", "nsubjpass")
+    return joined and not own and has(noun, "det")
 
 
 class Subjects:
@@ -201,7 +201,7 @@ class Subjects:
     @staticmethod
     def _is_order(token: Token) -> bool:
         """True for a bare verb before whose clause another begins: "shake on it, then one of them waves"."""
-        bare = token.tag_ in ("VB", "VBP") and all(c.dep_ not in ("aux", "mark") for c in token.children)
+        bare = token.tag_ in ("VB", "VBP") and not has(token, "aux", "mark")
         behind = (c for c in token.head.children if c.dep_ in ("nsubj", "nsubjpass"))
         return bare and token.dep_ in ("ccomp", "advcl", "dep") and any(token.i < c.i for c in behind)
 
@@ -210,7 +210,7 @@ class Subjects:
             return told
         if token.dep_ in ("relcl", "acl", "amod") and token.head != head:
             found = self._antecedent(token)
-            handles = token.tag_ == "VBG" and any(c.dep_ == "dobj" for c in token.children)
+            handles = token.tag_ == "VBG" and has(token, "dobj")
             if found is None or found.kind != "part" or not handles or head is None:
                 return found
             return self.of(head, self._tree.head(head))  # "they bump heads picking up a pencil"
@@ -331,13 +331,13 @@ def other_person(ref: Ref) -> Ref | None:
 
 def is_passive(token: Token) -> bool:
     """True for a passive of its own: "is pushed", "pushed by her"."""
-    signs = any(child.dep_ in ("nsubjpass", "auxpass", "agent") for child in token.children)
+    signs = has(token, "nsubjpass", "auxpass", "agent")
     return signs and token.tag_ == "VBN"
 
 
 def goes_on(token: Token) -> bool:
     """True for a participle that shares the auxiliary of a passive before it: "is pushed and kicked"."""
-    if token.dep_ != "conj" or any(child.dep_ in ("nsubj", "auxpass", "aux") for child in token.children):
+    if token.dep_ != "conj" or has(token, "nsubj", "auxpass", "aux"):
         return False
     being = next((child for child in token.head.children if child.dep_ == "auxpass"), None)
     present = being is not None and being.tag_ in ("VBZ", "VBP")
@@ -346,7 +346,7 @@ def goes_on(token: Token) -> bool:
 
 def state_of(token: Token, event: Event, known: Lexicon) -> Event | None:
     """A passive that only says how somebody is, as an event of "be": "they are seated"; None for other verbs."""
-    if not is_passive(token) or any(child.dep_ == "agent" for child in token.children):
+    if not is_passive(token) or has(token, "agent"):
         return None
     state = replace(event, lemma="be", words=[*event.words, token.lower_], ongoing=True)
     found = best(known.frames, state)

@@ -82,6 +82,11 @@ def _words() -> frozenset[str]:
     return frozenset(_language().vocab.strings)  # before texts are parsed, whose words the parser adds
 
 
+def has(token: Token, *relations: str) -> bool:
+    """True for a word on which another hangs in one of these relations."""
+    return any(child.dep_ in relations for child in token.children)
+
+
 _LIKENED, _BESIDE = frozenset(("like", "if", "though")), ("prep", "advcl", "mark", "advmod")
 
 
@@ -125,7 +130,7 @@ def seems(token: Token) -> bool:
 def is_likeness(token: Token) -> bool:
     """True for a noun that only says what somebody is like: "walks like an old man", "like children"."""
     children = {child.lower_ for child in token.children}
-    bare = token.tag_ == "NNS" and all(child.dep_ not in ("det", "poss") for child in token.children)
+    bare = token.tag_ == "NNS" and not has(token, "det", "poss")
     indefinite = bare or not children.isdisjoint(("a", "an"))
     return token.dep_ == "pobj" and token.head.lower_ == "like" and indefinite
 
@@ -154,12 +159,12 @@ def is_noun_or_side(token: Token) -> bool:
     sided = sided or behind in closed("laid") - {"over", "around"}  # "hands above his head"
     if sided and token.tag_ in ("NNS", "VBZ") and vocabulary().part(token.lemma_.lower()):
         return True
-    if word not in ("left", "level", "height") or any(c.dep_ in ("dobj", "nsubj") for c in token.children):
+    if word not in ("left", "level", "height") or has(token, "dobj", "nsubj"):
         return False
     if word != "left":
         return before.lower_ in ("to", "at")  # "to chest level", of which only the level is left
     # of "leave" only in a passive or a perfect, and behind another past: "hugged her and left"
-    leaves = any(c.dep_ in ("aux", "auxpass", "nsubjpass") for c in token.children)
+    leaves = has(token, "aux", "auxpass", "nsubjpass")
     leaves = leaves or (token.dep_ == "conj" and token.head.tag_ in ("VBD", "VBN"))
     return not leaves or before.pos_ == "VERB" or (token.i > 1 and token.nbor(-2).lower_ == "right")
 
@@ -172,7 +177,7 @@ def is_kept(token: Token) -> bool:
 
 def taken_away(verb: Token) -> list[Token]:
     """The objects of a verb that the parser hung on the one before: "stands behind him and massages his shoulders"."""
-    if verb.dep_ != "conj" or verb.pos_ != "VERB" or any(c.dep_ in ("dobj", "obj") for c in verb.children):
+    if verb.dep_ != "conj" or verb.pos_ != "VERB" or has(verb, "dobj", "obj"):
         return []
     others = (c for above in verb.ancestors for c in above.children if c.dep_ in ("dobj", "obj"))
     return [noun for noun in others if noun.left_edge.i == verb.i + 1]
@@ -196,7 +201,7 @@ def is_finite(token: Token) -> bool:
 def may_be_main(token: Token) -> bool:
     """True for a clause that is a main one if the one above it is."""
     if token.dep_ == "ccomp":  # of two clauses with nothing but a comma between them, the first
-        return token.i < token.head.i and any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
+        return token.i < token.head.i and has(token, "nsubj", "nsubjpass")
     if token.dep_ == "advcl":
         words = vocabulary()
         marks = any(c.dep_ in ("mark", "aux") or c.lower_ in words.marks for c in token.children)
@@ -293,10 +298,10 @@ class ClauseTree:
 
     def _nearer(self, token: Token, head: Token) -> Token:
         """The main clause behind ``head`` with its own subject: "he talks, but she turns and covers her ears"."""
-        if any(child.dep_ in ("nsubj", "nsubjpass") for child in token.children):
+        if has(token, "nsubj", "nsubjpass"):
             return head
         later = [self.doc[i] for i in self.mains if head.i < i < token.i and self.doc[i].sent == token.sent]
-        return next((t for t in reversed(later) if any(c.dep_ == "nsubj" for c in t.children)), head)
+        return next((t for t in reversed(later) if has(t, "nsubj")), head)
 
     def is_main(self, token: Token, told: bool = False) -> bool:
         """True for a clause that stands by itself in the order of the text, as one does of which it is ``told``."""

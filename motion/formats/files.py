@@ -67,7 +67,7 @@ def read_bytes(
         except OSError as error:
             raise InputError(f"{label} cannot be read ({error.strerror}): check the path.") from None
     if size > MAX_BYTES:
-        raise InputError(f"{label} is {size / 2**20:.0f} MB, more than the {MAX_BYTES // 2**20} MB allowed: {remedy}.")
+        raise InputError(f"{label} has {size / 2**20:.0f} MB, more than the {MAX_BYTES // 2**20} MB allowed: {remedy}.")
     if not data:
         raise InputError(f"{label} is empty: export it again.")
     return data, label

@@ -287,7 +287,9 @@ def test_another_skeleton_is_refused() -> None:
         ("He brings her a plate.", "A hands the plate to B"),
         ("A picks up a book.", "A picks up the book"),
         ("She holds out a mug to him.", "A offers B the mug"),
+        ("A holds out the left hand to B.", "A holds out the left hand to B"),
         ("A jumps once.", "A jumps once"),
+        ("They walk side by side to the left.", "they walk side by side to the left"),
         ("A runs around B.", "A walks around B quickly"),
         ("A sneaks up behind B on tiptoe.", "A comes up behind B on tiptoe slowly"),
         ("A puts both hands on B's hips.", "A puts both hands on B's hip"),
@@ -309,6 +311,11 @@ def test_who_walks_on_tiptoe_all_along_has_no_flat_stance() -> None:
 
     for heels in (0, 1):
         assert verdicts("A walks past B on tiptoe.", duet(glide, gap=1.0)) == [bool(heels)]
+
+
+def test_a_distance_that_the_words_name_is_the_one_that_counts() -> None:
+    for metres, gap, done in ((1, 1.0, True), (1, 1.8, False), (3, 1.8, False), (3, 3.0, True)):
+        assert verdicts(f"They stand {metres} metres apart.", duet(gap=gap)) == [done]
 
 
 def test_who_strolls_walks_at_any_pace() -> None:

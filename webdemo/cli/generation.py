@@ -28,7 +28,7 @@ def add_generate(commands: Any) -> None:
     asked.add_argument("--prompt", help="what the two people do, in English")
     asked.add_argument("--class", dest="label", help="name of a class of BiGraphDiff, such as 'shake hands'")
     asked.add_argument("--plan", type=Path, help="JSON file of a plan of acts, as `read` prints it")
-    parser.add_argument("--seconds", type=float, default=GenerateRequest.seconds, help="length of the motion")
+    parser.add_argument("--seconds", type=float, default=GenerateRequest.seconds)
     parser.add_argument(
         "--no-split", action="store_true", help="give a sentence of several beats to the network at once"
     )
@@ -116,7 +116,7 @@ def add_predict(commands: Any) -> None:
     add_reading(parser, "the past")
     parser.add_argument("--marker", type=float, help="second at which the past ends; the end by default")
     parser.add_argument("--seconds", type=float, default=PredictRequest.seconds, help="how many seconds to predict")
-    parser.add_argument("--seed", type=int, default=PredictRequest.seed, help="seed of a method that draws its futures")
+    parser.add_argument("--seed", type=int, default=PredictRequest.seed, help="of a method that draws its futures")
     parser.add_argument("--model", default=PredictRequest.model, help=names_of("predict"))
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh …")
     parser.set_defaults(job=predict)

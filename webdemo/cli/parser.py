@@ -25,7 +25,7 @@ class Parser(argparse.ArgumentParser):
 def names_of(task: Task) -> str:
     """The names of the methods of a task, for a help text."""
     names = [found.name for found in methods(task)]
-    return ", ".join([AUTOMATIC, *names] if task == "react" else names)
+    return " or ".join([AUTOMATIC, *names] if task == "react" else names)
 
 
 def add_reading(parser: argparse.ArgumentParser, of: str) -> None:
@@ -33,17 +33,17 @@ def add_reading(parser: argparse.ArgumentParser, of: str) -> None:
     parser.add_argument(
         "--animation",
         metavar="NAME",
-        help=f"which animation of {of} to read, if a .glb has several: name or number; the first by default",
+        help=f"of a .glb with several, the animation of {of} to read: name or number, from 1; the first by default",
     )
     parser.add_argument(
         "--file-fps",
         type=float,
         metavar="FPS",
-        help="true frames a second of a file that gives none, such as InterHuman's .npy (30 by default) or "
-        "Inter-X' .npz (120), or that gives a wrong one",
+        help="true frames a second of a file that gives none, such "
+        "as InterHuman's .npy (30 by default) or Inter-X' .npz (120), or gives a wrong one",
     )
     parser.add_argument(
-        "--file-up", metavar="AXIS", help=f"what points up in the file, if it is read wrongly: {', '.join(AXES)}"
+        "--file-up", metavar="AXIS", help=f"what points up in the file, where that is not found: {', '.join(AXES)}"
     )
     parser.add_argument(
         "--file-order", metavar="ORDER", help=f"order of joints without names: {', '.join(ORDERS)}; found by default"
@@ -69,17 +69,16 @@ def add_sampling(parser: argparse.ArgumentParser, task: Task) -> None:
     Those of a scene have no defaults here: what is not given is the story's own.
     """
     asked: Any = {"generate": GenerateRequest, "react": ReactRequest}.get(task)
-    whose = "model" if asked else "story"
 
     def add(option: str, kind: type, words: str, **more: Any) -> None:
         default = getattr(asked, option, None)
-        own = "" if default is not None else f"; the {whose}'s own if not given"
+        own = "" if default is not None else "; the story's own if not given" if asked is None else "; the model's own"
         parser.add_argument(f"--{option}", type=kind, default=default, help=f"{words}{own}", **more)
 
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
     add("seed", int, "seed of what is drawn")
     add("samples", int, "how many motions to generate")
-    parser.add_argument("--guidance", type=float, help=f"guidance scale; the {whose}'s own if not given")
+    parser.add_argument("--guidance", type=float, help=f"guidance scale s; the {'model' if asked else 'story'}'s own")
     add("steps", int, "denoising steps")
     add("damping", float, "damping threshold, 0 to 1")
     add("sampler", str, "ddim or dpm++")

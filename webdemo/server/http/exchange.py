@@ -232,4 +232,4 @@ class BoundedBody:
 
 def too_large(most: float) -> Refused:
     """The refusal of a body above ``most`` bytes."""
-    return Refused(413, f"The request is larger than the {most / 2**20:g} MB allowed: send less.", "too large")
+    return Refused(413, f"The request has more than the {most / 2**20:g} MB allowed: send less.", "too large")

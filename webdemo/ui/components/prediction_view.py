@@ -20,9 +20,8 @@ _NO_TRUTH = "The recording ends here, so there is nothing to compare with."
 
 def payload_of(result: Result, *, title: str = "") -> Payload:
     """The player's value for any result."""
-    if isinstance(result, PredictResult):
-        return prediction_payload(result, title=title)
-    return result_payload(result, title=title)
+    made = prediction_payload if isinstance(result, PredictResult) else result_payload
+    return made(result, title=title)
 
 
 def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:
