@@ -112,7 +112,7 @@ def measure(
     rows = scenes.split("test")
     rows = [rows[i] for i in rng.permutation(len(rows))[:prompts]]
     if len(rows) < POOL:
-        raise InputError(f"{len(rows)} test scenes are fewer than the {POOL} of retrieval: build more hours.")
+        raise InputError(f"{len(rows)} test scenes are fewer than the {POOL} that retrieval needs: build more hours.")
     real = features.motion([real_duet(scenes, row) for row in rows])
     train = scenes.split("train")
     others = [train[i] for i in rng.permutation(len(train))[: len(rows)]]
