@@ -12,6 +12,7 @@ from pathlib import Path
 import httpx
 import pytest
 
+from motion import InputError
 from tests.server.attacks.target import Target
 from tests.server.clients import FIELDS
 from webdemo.cli import main
@@ -78,6 +79,18 @@ def test_what_is_gone_is_left_out_and_so_are_sign_ins(tmp_path: Path) -> None:
     with closing(sqlite3.connect(backed_up(tmp_path) / "history.db")) as copy:
         assert copy.execute("SELECT count(*) FROM studies").fetchone() == (0,)
         assert copy.execute("SELECT count(*) FROM sessions").fetchone() == (0,)
+
+
+@pytest.mark.parametrize("where", [0, 8192])
+def test_a_damaged_database_takes_no_good_backup_s_place(tmp_path: Path, where: int) -> None:
+    """With ``--keep`` a backup of damaged pages removed the last one that could be restored."""
+    made = backed_up(tmp_path)
+    with open(lab_at(tmp_path).database, "r+b") as damaged:
+        damaged.seek(where)
+        damaged.write(b"\xff" * 4096)
+    with pytest.raises(InputError, match=r"history\.db is damaged \(.+\): no backup"):
+        back_up(lab_at(tmp_path), tmp_path / "b", keep=1)
+    assert backups(tmp_path / "b") == [made]
 
 
 def test_the_shell_backs_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

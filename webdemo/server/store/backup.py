@@ -38,7 +38,8 @@ def back_up(lab: Settings, folder: Path, *, keep: int = 0) -> Path:
         the backup's folder.
 
     Raises:
-        InputError: if the folder cannot be written, or another process makes a backup there.
+        InputError: if the folder cannot be written, another process makes a backup there, or the database is damaged;
+            no older backup is removed then.
     """
     name = PREFIX + time.strftime("%Y-%m-%dT%H%M%SZ", time.gmtime())
     try:
@@ -49,6 +50,8 @@ def back_up(lab: Settings, folder: Path, *, keep: int = 0) -> Path:
             for old in backups(folder)[:-keep] if keep else []:
                 shutil.rmtree(old)
     except (OSError, sqlite3.Error) as error:
+        if type(error) is sqlite3.DatabaseError:  # SQLite's for a damaged file
+            raise InputError(f"{lab.database} is damaged ({error}): no backup is made of it; restore one.") from None
         reason = getattr(error, "strerror", None) or error
         raise InputError(
             f"The backup cannot be written to {folder} ({reason}): choose another, or make room."
@@ -66,6 +69,8 @@ def _write(lab: Settings, half: Path) -> None:
     """Writes all of a backup."""
     with closing(sqlite3.connect(lab.database)) as live, closing(sqlite3.connect(half / DATABASE)) as copy:
         live.backup(copy)
+        if copy.execute("PRAGMA quick_check(1)").fetchone() != ("ok",):
+            raise sqlite3.DatabaseError("its pages do not fit together")
         copy.execute("PRAGMA foreign_keys=ON")
         for name, rows in _FOLDERS.items():
             _copy(lab.data / name, half / name)
