@@ -13,9 +13,11 @@ QUICK = {TESTS / module for module in listed()}
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """For ``-m quick`` nothing else is imported, which takes longer than the quick tests themselves."""
+    if config.option.markexpr != "quick" or collection_path in QUICK:
+        return None
     is_test = collection_path.name.startswith("test_") and collection_path.suffix == ".py"
-    left_out = config.option.markexpr == "quick" and is_test and collection_path not in QUICK
-    return True if left_out else None
+    is_empty = collection_path.is_dir() and not any(collection_path in module.parents for module in QUICK)
+    return True if is_test or is_empty else None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
