@@ -68,6 +68,8 @@ def test_what_is_pressed_is_24_pixels_high_and_wide(server: SimpleNamespace, ope
     page = live(open_page(server.url, width=width, height=900))
     ask(page, "two people shake hands")
     status(page, "done")
+    page.click("#share")
+    page.locator("#address button").wait_for()  # which copies it
     small = page.evaluate(_SMALL)
     for tab in ("Scene", "React", "Predict", "History"):
         page.get_by_role("tab", name=tab, exact=True).click()
