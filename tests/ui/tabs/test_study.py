@@ -71,7 +71,7 @@ def chosen(*ids: str) -> Any:
 
 def test_a_study_is_made_of_two_chosen_runs_and_its_link_is_shown(panel: StudyPanel) -> None:
     said = panel.choose(chosen("a", "b"))
-    assert "Guidance 2.5 against Guidance 4" in said[panel.line] and said[panel.fold] == gr.update(open=True)
+    assert "“Guidance 2.5” against “Guidance 4”" in said[panel.line] and said[panel.fold] == gr.update(open=True)
     said = panel.create(said[panel.chosen], QUESTION)
     assert "The study has 2 pairs" in said[panel.line] and said[panel.link] == "study/key"
     assert "Nobody has voted yet" in said[panel.result] and said[panel.table]["interactive"] is False

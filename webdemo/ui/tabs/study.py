@@ -77,7 +77,7 @@ class StudyPanel:
     def choose(self, event: gr.EventData) -> Parts:
         """Says what the two runs that are chosen in the notebook are called in a study."""
         ids = Action.read(event._data).ids
-        said = status(" against ".join(names(self._runs(ids))))
+        said = status(" against ".join(f"“{name}”" for name in names(self._runs(ids))))
         return {
             self.line: said,
             self.fold: gr.update(open=True),
