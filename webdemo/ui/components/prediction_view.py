@@ -20,8 +20,9 @@ _NO_TRUTH = "The recording ends here, so there is nothing to compare with."
 
 def payload_of(result: Result, *, title: str = "") -> Payload:
     """The player's value for any result."""
-    made = prediction_payload if isinstance(result, PredictResult) else result_payload
-    return made(result, title=title)
+    if isinstance(result, PredictResult):
+        return prediction_payload(result, title=title)
+    return result_payload(result, title=title)
 
 
 def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:
