@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +18,12 @@ import pytest
 from motion import InputError
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
-from webdemo.ui.history import Entry, Search
+from webdemo.ui.history import Search
 
-from .clients import answer_of
+from .attacks.target import Target
+from .clients import FIELDS, answer_of
 from .lab import ROOT
+from .queue.test_queue import wait_for
 
 pytestmark = pytest.mark.slow
 CALL = "/gradio_api/call/generate"
@@ -41,25 +43,23 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 
 
 class Process:
-    """A server on a free port: the stub's, or with ``real`` the program itself, watched."""
+    """The program itself on a free port, watched."""
 
-    def __init__(self, data: Path, *, real: bool = False, pause: float = 0.0) -> None:
+    def __init__(self, data: Path) -> None:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
         self.url, self.data = f"http://127.0.0.1:{port}", data
         env = os.environ | {
-            "STUB_PAUSE": str(pause),
             "PASDEDEUX_GRACE_SECONDS": "120",
             "PASDEDEUX_FREE_MEGABYTES": "0",
             "PASDEDEUX_PORT": str(port),
             "PASDEDEUX_DATA": str(data),
             "OMP_NUM_THREADS": "1",
         }
-        stub = [str(ROOT / "tests" / "server" / "lab.py"), str(port), str(data)]
-        command = ["-c", WATCH, str(ROOT / "app.py")] if real else stub
+        command = [sys.executable, "-c", WATCH, str(ROOT / "app.py")]
         self.process = subprocess.Popen(
-            [sys.executable, *command], cwd=ROOT, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+            command, cwd=ROOT, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
         self.wait_for(lambda: self.get("/healthz") is not None)
 
@@ -82,22 +82,21 @@ class Process:
         asked = httpx.post(f"{self.url}{CALL}", json={"data": data}, timeout=60)
         return f"{self.url}{CALL}/{asked.json()['event_id']}"
 
-    def states(self) -> list[str]:
-        return [entry.state for entry in self.entries()]
 
-    def entries(self) -> Sequence[Entry]:
-        return self.history().search("local", Search()).entries
+def history(data: Path) -> Notebook:
+    return Notebook(Database(data / "history.db"), data / "motions")
 
-    def history(self) -> Notebook:
-        return Notebook(Database(self.data / "history.db"), self.data / "motions")
+
+def states(data: Path) -> list[str]:
+    return [entry.state for entry in history(data).search("local", Search()).entries]
 
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Any]:
     running: list[Process] = []
 
-    def start_(**options: Any) -> Process:
-        running.append(Process(tmp_path / "data", **options))
+    def start_() -> Process:
+        running.append(Process(tmp_path / "data"))
         return running[-1]
 
     yield start_
@@ -106,33 +105,34 @@ def start(tmp_path: Path) -> Iterator[Any]:
         server.process.wait()
 
 
-def test_killed_while_it_works_started_again_and_stopped(start: Any) -> None:
+def test_killed_while_it_works_started_again_and_stopped(start: Any, tmp_path: Path) -> None:
     """The history is whole then; what runs at a stop is ended; and no other host is asked for anything."""
-    killed = start(pause=0.5)
-    assert "event: complete" in httpx.get(killed.ask(1), timeout=60).text
-    killed.ask(400)
-    killed.wait_for(lambda: killed.states() == ["running", "done"])
-    half = killed.data / "motions" / f".{killed.entries()[0].id}"
-    half.mkdir()  # as if it were about to be written
-    killed.process.send_signal(signal.SIGKILL)
-    killed.process.wait()
+    data = tmp_path / "data"
+    with Target(tmp_path, accounts=False, stub_pause=0.5, open=0) as killed:
+        assert "event: complete" in killed.call("eve", "generate", FIELDS)
+        killed.ask("eve", "POST", CALL, json={"data": [*FIELDS[:5], 400, *FIELDS[6:]]})
+        wait_for(lambda: states(data) == ["running", "done"])
+        half = data / "motions" / f".{history(data).search('local', Search()).entries[0].id}"
+        half.mkdir()  # as if it were about to be written
+        killed.process.kill()
+        killed.process.join()
 
-    server = start(real=True)
-    assert server.states() == ["interrupted", "done"] and not half.exists()
-    history = server.history()
-    lost, whole = server.entries()
-    assert history.open(whole.id, "local").result.duets[0].num_frames == 30
+    server = start()
+    assert states(data) == ["interrupted", "done"] and not half.exists()
+    kept = history(data)
+    lost, whole = kept.search("local", Search()).entries
+    assert kept.open(whole.id, "local").result.duets[0].num_frames == 30
     with pytest.raises(InputError, match="run it again"):
-        history.open(lost.id, "local")
+        kept.open(lost.id, "local")
     server.wait_for(lambda: server.get("/healthz").status_code == 200)  # its networks work
-    place = server.ask(150)
+    place = server.ask(60)
     with httpx.stream("GET", place, timeout=120) as stream:
         server.wait_for(lambda: b"pasdedeux_queue_running 1.0" in server.get("/metrics").content)
         server.process.send_signal(signal.SIGTERM)
         lines = list(stream.iter_lines())
     assert [line for line in lines if line.startswith("event: ")][-1] == "event: complete"
-    assert answer_of("\n".join(lines))["manifest"]["request"]["steps"] == 150
+    assert answer_of("\n".join(lines))["manifest"]["request"]["steps"] == 60
     said = server.process.communicate(timeout=60)[0]
     assert server.process.returncode in (0, -signal.SIGTERM)
     assert "OUTSIDE" not in said and "Traceback" not in said
-    assert server.states() == ["done", "interrupted", "done"]
+    assert states(data) == ["done", "interrupted", "done"]

@@ -51,7 +51,7 @@ def test_a_damaged_database_is_reported(own: Target) -> None:
     """Its middle is overwritten while the server runs: no SQL is shown, and the health says so."""
     functions = own.ask("ada", "GET", "/config").json()["dependencies"]
     refresh = next(function["id"] for function in functions if function["api_name"] == "refresh")
-    for _ in range(20):
+    for _ in range(3):
         assert "event: complete" in own.call("ada", "generate", ["SECRET " * 60, *FIELDS[1:]])
     file = own.data / "history.db"
     with closing(sqlite3.connect(file)) as other:  # so that all is in the one file, and is read from it anew
