@@ -109,7 +109,8 @@ def _by_hand(act: Act, caption: str) -> str:
 def by_limb(act: Act, caption: str) -> str:
     """The limb on the act's side that does it: " with the left foot"."""
     own = act.part if act.part in closed("limbs") and act.part_of in act.agents else None
-    return f" with the {act.side} {own or ('foot' if _BY_FOOT.search(caption) else 'hand')}"
+    limb = own or ("foot" if _BY_FOOT.search(caption) else "hand")
+    return f" with both {_plural(limb)}" if act.side == "both" else f" with the {act.side} {limb}"
 
 
 def with_thing(act: Act, caption: str) -> tuple[Act, str]:

@@ -288,6 +288,7 @@ def test_another_skeleton_is_refused() -> None:
         ("A picks up a book.", "A picks up the book"),
         ("She holds out a mug to him.", "A offers B the mug"),
         ("A holds out the left hand to B.", "A holds out the left hand to B"),
+        ("A pushes B with both hands.", "A pushes B with both hands"),
         ("A jumps once.", "A jumps once"),
         ("They walk side by side to the left.", "they walk side by side to the left"),
         ("A runs around B.", "A walks around B quickly"),

@@ -177,7 +177,7 @@ def reaches(m: Motion, who: int, side: str = "any", metres: float = 0.3) -> Mask
 
 @predicate
 def offers(m: Motion, who: int, side: str = "any") -> Mask:
-    """Stands within two steps of the other, looks at them and holds a hand out to them, no higher than the shoulder."""
+    """Stands within three steps of the other, looks at them and holds a hand out, no higher than the shoulder."""
     over_waist = m.pair(who, "wrist")[..., 1] > m.joint(who, "pelvis")[:, 1] + 0.02
     held = (_reach(m, who) > 0.3) & over_waist & (_lift(m, who) < 0.05) & _still(m, who)
     return _held_before_other(m, who, _of_side(held, side))
@@ -185,7 +185,7 @@ def offers(m: Motion, who: int, side: str = "any") -> Mask:
 
 @predicate
 def holds_up(m: Motion, who: int, side: str = "any") -> Mask:
-    """Stands within two steps of the other, looks at them and holds a hand up, above the shoulder."""
+    """Stands within three steps of the other, looks at them and holds a hand up, above the shoulder."""
     return _held_before_other(m, who, _of_side((_lift(m, who) > 0.0) & _still(m, who), side))
 
 
@@ -195,7 +195,7 @@ def _still(m: Motion, who: int) -> Mask:
 
 
 def _held_before_other(m: Motion, who: int, hand: Mask) -> Mask:
-    ready = (m.speeds[who] < 0.25) & (m.off(who) < 50) & (m.distance < 1.7)
+    ready = (m.speeds[who] < 0.25) & (m.off(who) < 50) & (m.distance < 2.0)
     return keep(hand & ready, m.fps, lambda i, j: j - i >= 0.4 * m.fps, pause=0.1)
 
 
