@@ -319,6 +319,21 @@ def test_a_distance_that_the_words_name_is_the_one_that_counts() -> None:
         assert verdicts(f"They stand {metres} metres apart.", duet(gap=gap)) == [done]
 
 
+def test_who_crawls_has_a_hand_near_the_floor() -> None:
+    def low(both: np.ndarray) -> None:
+        both[0, ..., 1] -= 0.4
+        both[0, ..., 2] += np.linspace(0, 1, both.shape[1])[:, None]
+        both[0, :, index("left_wrist"), 1] = height
+
+    for height in (0.1, 0.6):
+        assert verdicts("A crawls forward.", duet(low, gap=3.0)) == [height < 0.5]
+
+
+@pytest.mark.parametrize("gap", [1.2, 1.85])
+def test_a_hand_is_held_out_from_up_to_three_steps_away(gap: float) -> None:
+    assert verdicts("A holds out a hand to B.", duet(put("left_wrist", (0.2, 0.4, 0.4)), gap=gap)) == [True]
+
+
 def test_who_strolls_walks_at_any_pace() -> None:
     def go(both: np.ndarray) -> None:
         both[..., 2] += np.linspace(0, 4, both.shape[1])[:, None]
