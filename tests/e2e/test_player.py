@@ -224,6 +224,7 @@ def test_empty_busy_and_empty_again(player):
     press(page, "busy")
     page.wait_for_selector(".pdd-busy:visible")
     assert page.locator(".pdd-busy-text").inner_text() == "Step 12 of 50 ${1+1}"
+    assert page.locator(".pdd-labels").first.is_hidden(), "what is not drawn gives labels no place"
     press(page, "load")
     until(page, "window.__pasdedeux.frame > 0")
     assert page.locator(".pdd-busy").is_hidden()
