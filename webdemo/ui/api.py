@@ -214,10 +214,10 @@ class ReactEndpoint(Endpoint):
 
     def inputs(self) -> Inputs:
         """See :meth:`Endpoint.inputs`."""
-        found = methods("react")
-        streaming = " or ".join(m.name for m in found if "online" in m.modes)
-        posed = " or ".join(m.name for m in found if "first pose" in m.takes)
-        models = " or ".join([AUTOMATIC, *(m.name for m in found)])
+        candidates = methods("react")
+        streaming = " or ".join(m.name for m in candidates if "online" in m.modes)
+        posed = " or ".join(m.name for m in candidates if "first pose" in m.takes)
+        models = " or ".join([AUTOMATIC, *(m.name for m in candidates)])
         return {
             "actor": gr.File(label="the given person: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
             "prompt": gr.Textbox("", label="what the two people do, in English; may be empty"),
@@ -321,10 +321,10 @@ class SceneEndpoint(Endpoint):
 
 
 def _two_people(path: str, choices: ImportChoices) -> Duet:
-    found = read(Path(path), longest=MOST_SECONDS, choices=choices)
-    if not isinstance(found, Duet):
+    motion = read(Path(path), longest=MOST_SECONDS, choices=choices)
+    if not isinstance(motion, Duet):
         raise InputError(f"{Path(path).name} holds one person: a scene goes on from a motion of two.")
-    return to_smpl(found)
+    return to_smpl(motion)
 
 
 class ReadEndpoint(Endpoint):
@@ -387,20 +387,20 @@ class RenderEndpoint(Endpoint):
             if width > 1920 or height > 1080:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
             with READING.place():
-                found = read(
+                shown = read(
                     Path(motion), choices=reading_choices(asked | {"fps": asked["file_fps"]}), longest=films.LONGEST
                 )
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
             style = Style(look=look, theme=theme, names=suffix not in SHEETS)
             if suffix in SHEETS:
-                return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
+                return str(write_sheet(shown, out, width=int(width), title=name, style=style, view=view))
             if suffix == plotly_figure.SUFFIX:
-                return str(plotly_figure.write_figure(found, out, title=name, theme=theme))
+                return str(plotly_figure.write_figure(shown, out, title=name, theme=theme))
             size, hear = (int(width), int(height)), films.in_time()
             return str(
                 film.write_film(
-                    [Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name, progress=hear
+                    [Pane(shown)], out, fps=fps, size=size, style=style, view=view, title=name, progress=hear
                 )
             )
         except Exception as error:

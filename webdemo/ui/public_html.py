@@ -48,10 +48,10 @@ class Place:
 def caption(entry: Entry) -> str:
     """One line on how a result was made: by which method, how long, and its seed."""
     asked = entry.request
-    found = [label_of(str(asked["model"]))] if asked.get("model") else []
-    found += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
-    found += [f"seed {asked['seed']}"] if isinstance(asked.get("seed"), int) else []
-    return " · ".join(found)
+    parts = [label_of(str(asked["model"]))] if asked.get("model") else []
+    parts += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
+    parts += [f"seed {asked['seed']}"] if isinstance(asked.get("seed"), int) else []
+    return " · ".join(parts)
 
 
 def player_html(entry: Entry, payload: Payload, place: Place, *, until: float) -> str:

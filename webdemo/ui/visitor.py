@@ -49,5 +49,5 @@ def visitor() -> Visitor:
 
 def visitor_of(request: Request) -> Visitor:
     """The person who sent a request, as the guard found them."""
-    found = request.scope.get("state", {}).get("visitor")
-    return found if isinstance(found, Visitor) else LOCAL
+    visitor = request.scope.get("state", {}).get("visitor")
+    return visitor if isinstance(visitor, Visitor) else LOCAL

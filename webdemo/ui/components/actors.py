@@ -28,8 +28,8 @@ ReadWith = tuple[str, float | None, str, int | None]
 
 def react_choices() -> list[tuple[str, str]]:
     """(label, key) of the ways to react whose weights are there, in each of their modes; automatic first."""
-    found = [(v.label, v.key) for method in installed("react") for v in method.variants]
-    return [("Automatic", AUTOMATIC), *found]
+    choices = [(v.label, v.key) for method in installed("react") for v in method.variants]
+    return [("Automatic", AUTOMATIC), *choices]
 
 
 def reactor(key: str | None, fields: Mapping[str, Any] | None = None) -> Variant:
@@ -134,16 +134,16 @@ def read_source(path: str | Path, name: str | None = None, read_with: ReadWith |
     """A motion file as a source; raises InputError where it cannot be read."""
     path = Path(path)
     with READING.place():
-        found = import_motion(path, choices=import_choices(*read_with) if read_with else None)
+        imported = import_motion(path, choices=import_choices(*read_with) if read_with else None)
     return Source(
         name or path.name,
-        tuple(at_30_fps(person) for person in found.people),
+        tuple(at_30_fps(person) for person in imported.people),
         path=path,
-        found=found.describe(),
-        notes=found.notes,
-        asks=found.asks,
+        found=imported.describe(),
+        notes=imported.notes,
+        asks=imported.asks,
         read_with=read_with or Source.read_with,
-        animations=animation_labels(found.animations),
+        animations=animation_labels(imported.animations),
     )
 
 

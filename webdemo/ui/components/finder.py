@@ -49,9 +49,9 @@ def known(history: HistoryLike) -> dict[str, Any]:
 
 @cache
 def _acts() -> list[list[str]]:
-    found = [
+    rows = [
         [short(Act(id="1", act=name, agents=("a",), patient="b"), entry), entry.reads[0]]
         for name, entry in lexicon().entries.items()
         if entry.shown and entry.reads
     ]
-    return sorted(found)
+    return sorted(rows)

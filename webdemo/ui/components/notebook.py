@@ -71,12 +71,12 @@ class Action(Sent):
     def read(cls, data: Any) -> Action:
         """The action that a browser sent; raises InputError for anything that the notebook does not send."""
         try:
-            found = cls.model_validate(data)
+            action = cls.model_validate(data)
         except ValidationError:
             raise InputError(UNKNOWN) from None
-        if found.act not in ACTS or len(found.ids) > MOST_SHOWN:
+        if action.act not in ACTS or len(action.ids) > MOST_SHOWN:
             raise InputError(UNKNOWN)
-        return found
+        return action
 
     @property
     def one(self) -> str:
@@ -110,21 +110,21 @@ class NotebookView(Part):
     module = "notebook.js"
 
 
-def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None = None) -> dict[str, Any]:
+def shown(listed: Found, *, empty: str, removed: int = 0, search: Search | None = None) -> dict[str, Any]:
     """The value of a :class:`NotebookView`.
 
     Args:
-        found: by a search.
-        empty: said where it found nothing, a sentence or the key of a text.
+        listed: by a search.
+        empty: said where nothing is listed, a sentence or the key of a text.
         removed: runs that can be brought back.
         search: what was searched for; everything by default. The browser drops an answer to another search.
     """
     asked = asdict(search or Search())
     return {
-        "entries": [_card(entry) for entry in found.entries],
-        "total": found.total,
-        "tags": list(found.tags),
-        "models": [[name, label_of(name)] for name in found.models],
+        "entries": [_card(entry) for entry in listed.entries],
+        "total": listed.total,
+        "tags": list(listed.tags),
+        "models": [[name, label_of(name)] for name in listed.models],
         "empty": empty,
         "removed": removed,
         "step": STEP,
@@ -152,10 +152,10 @@ def _card(entry: Entry) -> dict[str, Any]:
 def facts(entry: Entry) -> str:
     """One line for a run: by which method, how long, its seed, when, and marks."""
     asked = entry.request
-    found = [label] if (label := method_label(asked)) else []
-    found += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
-    found += [f"seed {asked['seed']}"] if "seed" in asked else []
-    found.append(time.strftime("%d %b %Y %H:%M", time.localtime(entry.created)))
-    found += [_MARKS[entry.state]] if entry.state in _MARKS else []
-    found += [f"{entry.links} link{'s' if entry.links > 1 else ''}"] if entry.links else []
-    return " · ".join(found)
+    parts = [label] if (label := method_label(asked)) else []
+    parts += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
+    parts += [f"seed {asked['seed']}"] if "seed" in asked else []
+    parts.append(time.strftime("%d %b %Y %H:%M", time.localtime(entry.created)))
+    parts += [_MARKS[entry.state]] if entry.state in _MARKS else []
+    parts += [f"{entry.links} link{'s' if entry.links > 1 else ''}"] if entry.links else []
+    return " · ".join(parts)

@@ -95,8 +95,8 @@ def result_payload(result: Result, *, title: str = "") -> Payload:
 
 def _contacts(readouts: tuple[Mapping[str, Any], ...]) -> list[Contact] | None:
     """Those of a sample's read-outs, if it has any."""
-    found = readouts[0].get("contacts") if readouts else None
-    return None if found is None else [Contact(**contact) for contact in found]
+    contacts = readouts[0].get("contacts") if readouts else None
+    return None if contacts is None else [Contact(**contact) for contact in contacts]
 
 
 @lru_cache(maxsize=1)

@@ -107,10 +107,10 @@ def reread(sent: Any) -> dict[str, Any]:
     asked = {"text": text, "number": fields.get("number"), "edited": bool(fields.get("plan"))}
     try:
         plan = edited_plan(sent, text) or read(text)
-        found = shown(plan)
+        reading = shown(plan)
     except Exception as error:
-        found = {"error": error_line(error)}
-    return gr.update(shown=asked | found)
+        reading = {"error": error_line(error)}
+    return gr.update(shown=asked | reading)
 
 
 def edited_plan(sent: Any, text: str) -> Plan | None:

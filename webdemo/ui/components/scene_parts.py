@@ -92,13 +92,13 @@ def went_on(story: Any, wanted: SceneRequest) -> dict[str, Any]:
 
 def beats_in(beats: tuple[Beat, ...], start: float, end: float) -> tuple[Beat, ...]:
     """The beats of which a span holds at least half a second, with their lengths in it."""
-    found, at = [], 0.0
+    listed, at = [], 0.0
     for beat in beats:
         inside = min(at + beat.length, end) - max(at, start)
         if inside >= 0.5:
-            found.append(Beat(beat.words, beat.a, beat.b, round(inside, 2)))
+            listed.append(Beat(beat.words, beat.a, beat.b, round(inside, 2)))
         at += beat.length
-    return tuple(found) or (Beat(seconds=max(end - start, 0.5)),)
+    return tuple(listed) or (Beat(seconds=max(end - start, 0.5)),)
 
 
 def wishes_in(

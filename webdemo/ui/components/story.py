@@ -114,11 +114,11 @@ def story_fields(value: Any) -> dict[str, Any]:
         return {"beats": (), "paths": (), "poses": (), **ticked(value)}
     try:
         beats = [entry for entry in list(value.get("beats") or ())[: MOST_BEATS + 1] if isinstance(entry, Mapping)]
-        found = tuple(beat_of(entry) for entry in beats)
-        for number, beat in enumerate(found, 1):
+        read = tuple(beat_of(entry) for entry in beats)
+        for number, beat in enumerate(read, 1):
             beat.check(number)
         return {
-            "beats": found,
+            "beats": read,
             "paths": tuple(path_of(entry) for entry in value.get("paths") or ()),
             "poses": tuple(pose_of(entry) for entry in value.get("poses") or ()),
             **ticked(value),
@@ -131,8 +131,8 @@ def story_fields(value: Any) -> dict[str, Any]:
 
 def ticked(value: Any) -> dict[str, Any]:
     """The fields of a :class:`SceneRequest` that are ticked on a story, whatever else is in it."""
-    found = value if isinstance(value, Mapping) else {}
-    return {"loop": bool(found.get("loop")), "planned": found.get("planned") is not False}
+    state = value if isinstance(value, Mapping) else {}
+    return {"loop": bool(state.get("loop")), "planned": state.get("planned") is not False}
 
 
 def span_of(value: Any) -> tuple[float, float] | None:

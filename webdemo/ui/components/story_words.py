@@ -36,11 +36,11 @@ def settled(story: Any, text: str) -> tuple[Any, str]:
     if beats and (story.get("ahead") or not text.strip()):
         return {**story, "ahead": False}, story_text(beats)
     go_on = in_time()
-    found = read_words(text, go_on)
-    if "paths" in found:
-        laid = story_value(found["beats"], found["paths"], found["poses"], loop=found["loop"], planned=found["planned"])
-        return laid, story_text(found["beats"])
-    return reworded(story, found["beats"], go_on), text
+    read = read_words(text, go_on)
+    if "paths" in read:
+        laid = story_value(read["beats"], read["paths"], read["poses"], loop=read["loop"], planned=read["planned"])
+        return laid, story_text(read["beats"])
+    return reworded(story, read["beats"], go_on), text
 
 
 def reworded(story: Any, beats: tuple[Beat, ...], go_on: Callable[[], None]) -> Any:
@@ -77,14 +77,14 @@ def _along(poses: tuple[Pose, ...], old: Sequence[Beat], new: Sequence[Beat], he
     """Poses in the first ``head`` beats, and those in or behind the last ``tail``, which move with them."""
     starts = np.cumsum([0.0, *(beat.length for beat in old)])
     by = sum(beat.length for beat in new) - float(starts[-1])
-    found = []
+    moved = []
     for pose in poses:
         beat = int(np.searchsorted(starts, pose.seconds + 1e-4, side="right")) - 1
         if beat < head:
-            found.append(pose)
+            moved.append(pose)
         elif beat >= len(old) - tail:
-            found.append(replace(pose, seconds=round(pose.seconds + by, 4)))
-    return tuple(found)
+            moved.append(replace(pose, seconds=round(pose.seconds + by, 4)))
+    return tuple(moved)
 
 
 def said_of(text: str, story: Any) -> str:

@@ -65,8 +65,8 @@ def read_axis(kind: Kind, given: str) -> Axis:
         InputError: for no value, one that does not fit the setting, or more than a grid holds.
     """
     parts = [part.strip() for part in kind.split.split(given[:5000].strip()) if part.strip()]
-    if kind.read is whole and (found := _RANGE.match(given.strip())):
-        first, last = int(found[1]), int(found[2])
+    if kind.read is whole and (range_ := _RANGE.match(given.strip())):
+        first, last = int(range_[1]), int(range_[2])
         _check(last - first + 1)
         parts = [str(value) for value in range(first, last + 1)]
     if not parts:

@@ -106,13 +106,13 @@ class ActorPanel(SourcePanel):
 
     def _chosen(self, source: Source, begin: float, end: float) -> Parts:
         last = max(round(source.seconds, 1), _SHORTEST)
-        found = source.found or "Taken from a result or the history, so there was nothing to detect."
+        detected = source.found or "Taken from a result or the history, so there was nothing to detect."
         return {
             self.trim: gr.update(visible=True),
             self.person: gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
             self.begin: gr.update(maximum=last, value=begin),
             self.end: gr.update(maximum=last, value=min(end, last)),
-            self.found: status(found),
+            self.found: status(detected),
         }
 
     @said
@@ -132,7 +132,7 @@ class ActorPanel(SourcePanel):
         if end - start < shortest - 1e-6:
             return status(f"{used} Take {shortest:g} s or more.", tone="warning")
         if end - start > longest + 0.05:
-            takers = [found.label for found in methods("react") if end - start <= found.seconds[1] + 0.05]
+            takers = [each.label for each in methods("react") if end - start <= each.seconds[1] + 0.05]
             advice = f"Choose {' or '.join(takers)}, or take" if takers else "Take"
             return status(f"{used} {advice} {longest:g} s or less.", tone="warning")
         return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")

@@ -36,9 +36,9 @@ def generate_choices() -> list[tuple[str, str]]:
     """(label, name) of the methods that make two people: by what they take, and from the second on by name."""
     choices: list[tuple[str, str]] = []
     plain = {"words": "A sentence", "class": "A class"}
-    for found in installed("generate"):
-        kind = next((kind for kind in plain if kind in found.takes), "")
-        choices.append((plain.pop(kind, found.label), found.name))
+    for each in installed("generate"):
+        kind = next((kind for kind in plain if kind in each.takes), "")
+        choices.append((plain.pop(kind, each.label), each.name))
     return choices
 
 
@@ -50,13 +50,13 @@ def _chosen_class(fields: Mapping[str, Any]) -> str:
 
 def _class_in(sentence: str, label: str) -> str:
     """The class that a sentence names; raises InputError if it names none."""
-    found = next((name for name in installed_classes() if name in sentence.lower()), None)
-    if found is None:
+    named = next((name for name in installed_classes() if name in sentence.lower()), None)
+    if named is None:
         raise InputError(
             f"The sentence names none of {label}'s classes: write one of them, such as “shake hands”, or change to "
             "A class, which lists them all."
         )
-    return found
+    return named
 
 
 _EDITED_UNPLANNED = "The plan was edited, but it is not followed: choose Plan from the words, or press Read again."
@@ -189,14 +189,14 @@ class GenerateTab(JobTab):
     @staticmethod
     def asked_by(way: str) -> Updates:
         """Shows the inputs that a method takes, and sets its guidance and steps."""
-        found, by_class = method(way), takes_class(way)
+        chosen, by_class = method(way), takes_class(way)
         by_sentence = gr.update(visible=not by_class)
         return (
             by_sentence,
             gr.update(visible=by_class),
-            gr.update(value=found.default("guidance", GenerateRequest.guidance)),
-            gr.update(value=found.steps),
-            gr.update(value=pace_of(found.steps)),
+            gr.update(value=chosen.default("guidance", GenerateRequest.guidance)),
+            gr.update(value=chosen.steps),
+            gr.update(value=pace_of(chosen.steps)),
             *(by_sentence,) * 3,
         )
 
@@ -229,15 +229,15 @@ class GenerateTab(JobTab):
         asked = run.entry.request
         model = asked.get("model", GenerateRequest.model)
         sentence, label, *_ = self.asked_by(model)
-        found = super().opened(run)
-        found |= {part: found.get(part, {}) | sentence for part in self._of_sentences()}
+        updates = super().opened(run)
+        updates |= {part: updates.get(part, {}) | sentence for part in self._of_sentences()}
         if takes_class(model):
             label = gr.update(value=asked.get("prompt"), visible=True)
         else:
-            found[self.reading] = self._opened_reading(asked, run.result)
+            updates[self.reading] = self._opened_reading(asked, run.result)
         planned = bool(asked.get("planned", takes_class(model)))  # once, words did not become paths
-        found[self.planned] |= {"value": planned}
-        return found | {self.by_sentence: sentence, self.class_name: label}
+        updates[self.planned] |= {"value": planned}
+        return updates | {self.by_sentence: sentence, self.class_name: label}
 
     def _opened_reading(self, asked: Mapping[str, Any], result: Result) -> dict[str, Any]:
         """The update that shows the plan of a kept run."""

@@ -54,10 +54,10 @@ def methods_kind(field: str, labels: Mapping[str, str]) -> Kind:
 
 def _named_method(known: Mapping[str, str], given: str) -> str:
     """The name of a method from its name or label; raises InputError for another."""
-    found = known.get(given.lower(), given)
-    if found not in known.values():
+    named = known.get(given.lower(), given)
+    if named not in known.values():
         raise InputError(f"There is no method {given[:40]!r}: choose from {', '.join(known.values())}.")
-    return found
+    return named
 
 
 class Grids:

@@ -97,14 +97,14 @@ class HistoryTab:
 
     def refresh(self, removed: list[str], search: Search = _EVERYTHING) -> Updates:
         """The newest runs that a search finds, whose they are, and how much room all of these use."""
-        room, found = "", Found((), 0)
+        room, listed = "", Found((), 0)
         empty = EMPTY if search == Search(limit=search.limit) else NOTHING_FOUND
         try:
-            found = self.history.search(visitor().owner, search)
+            listed = self.history.search(visitor().owner, search)
             room = room_html(self.history.usage(visitor()))
         except Exception as error:
             empty = error_line(error)
-        view = shown(found, empty=empty, removed=len(removed), search=search)
+        view = shown(listed, empty=empty, removed=len(removed), search=search)
         return gr.update(value=view), _signed_in(visitor()) + room
 
     def act(self, removed: list[str], event: gr.EventData) -> Updates:

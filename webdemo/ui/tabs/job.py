@@ -328,10 +328,10 @@ class JobTab(ABC):
         try:
             if not trail:
                 raise InputError("There is no motion before this one.")
-            found = self.opened(self.page.history.open(trail[-1], visitor().owner))
+            updates = self.opened(self.page.history.open(trail[-1], visitor().owner))
         except Exception as error:
-            found = {self.line: status(error_line(error), tone="error")}
-        return found | {self.trail: trail, self.results.back: gr.update(visible=len(trail) > 1)}
+            updates = {self.line: status(error_line(error), tone="error")}
+        return updates | {self.trail: trail, self.results.back: gr.update(visible=len(trail) > 1)}
 
     def cancel(self, request: gr.Request) -> None:
         """Stops the session's run within one denoising step, or as soon as what it needs was read."""

@@ -214,13 +214,13 @@ class PredictTab(JobTab):
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the motion that was asked about, so that the marker can be moved on it."""
-        found, result, past = super().opened(run), run.result, self.past
+        updates, result, past = super().opened(run), run.result, self.past
         if not isinstance(result, PredictResult):
-            return found
+            return updates
         given = result.given
         named = result.manifest.get("request", {}).get("motion", {}).get("name") or run.entry.title
         source = Source(named, given.people)
-        return found | {
+        return updates | {
             past.file: None,
             past.animation: offered_animations(source),
             past.state: source,

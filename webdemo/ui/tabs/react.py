@@ -178,11 +178,11 @@ class ReactTab(JobTab):
         method = next((key for key, v in known.items() if (v.method.name, v.mode) == its), next(iter(known)))
         if controls.get("method") in (*known, AUTOMATIC):
             method = str(controls["method"])
-        found = super().opened(run)
+        updates = super().opened(run)
         fitted = dict(zip(self._fitted(), self.fit_method(method), strict=True))
         for part, fit in fitted.items():
-            kept = found.get(part)
+            kept = updates.get(part)
             fitted[part] = {**fit, "value": kept["value"]} if isinstance(kept, dict) else fit
         given = self.actor.opened(run)
-        found |= {**fitted, **given, self.method: gr.update(value=method)}
-        return found
+        updates |= {**fitted, **given, self.method: gr.update(value=method)}
+        return updates

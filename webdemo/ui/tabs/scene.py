@@ -230,12 +230,12 @@ class SceneTab(JobTab):
             return {self.line: status("This is the motion already.")}
         kept = self.shown(only_sample(record.result, sample), record.prompt)
         kept["line"] = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
-        found = {self.outputs[name]: kept[name] for name in ("player", "line", "record", "own", "take")}
-        return found | {self.trail: [*trail, record.result.run]}
+        updates = {self.outputs[name]: kept[name] for name in ("player", "line", "record", "own", "take")}
+        return updates | {self.trail: [*trail, record.result.run]}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the story that was asked for."""
-        found, duet = super().opened(run), run.result.duets[0]
+        updates, duet = super().opened(run), run.result.duets[0]
         if run.entry.kind == "scene" and isinstance(duet, Duet):
             asked = run.entry.request
             motion = duet if "motion" in asked else None
@@ -245,11 +245,11 @@ class SceneTab(JobTab):
                 story = value_of(request)
             else:
                 story = went_on(whole, request) if request.end is None else whole
-            found[self.line_up] = gr.update(value=story)
+            updates[self.line_up] = gr.update(value=story)
             said = said_of(str(run.kept.controls.get("prompt") or ""), story)
-            found[self.prompt] = gr.update(value=said)
-            found[self.reading] = gr.update(checked={} if motion is not None else checked(said, run.result.manifest))
-        return found
+            updates[self.prompt] = gr.update(value=said)
+            updates[self.reading] = gr.update(checked={} if motion is not None else checked(said, run.result.manifest))
+        return updates
 
 
 def _changed(fields: Mapping[str, Any]) -> Any:

@@ -74,12 +74,12 @@ class SharingPanel:
         mine = {page.key: page for page in self.history.pages(who.owner)}
         if not mine:
             return {self.reading: gr.update(visible=False), self.which: gr.update(choices=[], value=None)}
-        found = mine.get(key or "") or next(iter(mine.values()))
+        link = mine.get(key or "") or next(iter(mine.values()))
         return {
             self.reading: gr.update(visible=True),
-            self.which: gr.update(choices=[(_about(page), page.key) for page in mine.values()], value=found.key),
-            self.link: f"{who.base}share/{found.key}",
-            self.frame: frame_code(f"{who.base}embed/{found.key}", found.title),
+            self.which: gr.update(choices=[(_about(page), page.key) for page in mine.values()], value=link.key),
+            self.link: f"{who.base}share/{link.key}",
+            self.frame: frame_code(f"{who.base}embed/{link.key}", link.title),
         }
 
     @said

@@ -126,9 +126,9 @@ class SourcePanel(ABC):
             *_, taken = self.take_result(record)
             return taken
         name, path = self.examples[0]
-        *_, found = self.load(partial(read_source, path, name))
-        player = found[self.results.player]
-        return found | {self.results.player: {**player, "value": {**player["value"], "rounds": ROUNDS}}}
+        *_, updates = self.load(partial(read_source, path, name))
+        player = updates[self.results.player]
+        return updates | {self.results.player: {**player, "value": {**player["value"], "rounds": ROUNDS}}}
 
     def upload(self, path: str | None) -> Iterator[Parts]:
         """Reads an uploaded file and shows its motion; one that cannot be read leaves no motion."""
@@ -158,11 +158,11 @@ class SourcePanel(ABC):
         yield {self.line: status(waiting, tone="busy"), player: busy(waiting), self.go: gr.update(interactive=False)}
         try:
             source = read()
-            found = {self.state: source, player: show(self.payload(source)), **self.described(source, at_end=at_end)}
+            updates = {self.state: source, player: show(self.payload(source)), **self.described(source, at_end=at_end)}
         except Exception as error:
-            found = {player: busy(""), **(self.gone() if fresh else {})}
-            found[self.line] = status(error_line(error), tone="error")
-        yield {**found, self.go: gr.update(interactive=True)}
+            updates = {player: busy(""), **(self.gone() if fresh else {})}
+            updates[self.line] = status(error_line(error), tone="error")
+        yield {**updates, self.go: gr.update(interactive=True)}
 
     def forget(self) -> Parts:
         """The tab without a motion; a result stays in the downloads."""

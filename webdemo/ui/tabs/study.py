@@ -110,17 +110,17 @@ class StudyPanel:
         mine = {each.id: each for each in self.studies.mine(who.owner)}
         if not mine:
             return {self.reading: gr.update(visible=False), self.which: gr.update(choices=[], value=None)}
-        found = mine.get(study or "") or next(iter(mine.values()))
+        chosen = mine.get(study or "") or next(iter(mine.values()))
         file = None
-        if found.voters:
-            file = str(self.page.shelf.folder() / f"votes-{found.id[:8]}.csv")
-            self.studies.export(found.id, who.owner, Path(file))
+        if chosen.voters:
+            file = str(self.page.shelf.folder() / f"votes-{chosen.id[:8]}.csv")
+            self.studies.export(chosen.id, who.owner, Path(file))
         choices = [(f"{' against '.join(each.runs)}: {each.question}", each.id) for each in mine.values()]
         return {
             self.reading: gr.update(visible=True),
-            self.which: gr.update(choices=choices, value=found.id),
-            self.link: f"{who.base}study/{found.key}",
-            self.result: result_html(found),
+            self.which: gr.update(choices=choices, value=chosen.id),
+            self.link: f"{who.base}study/{chosen.key}",
+            self.result: result_html(chosen),
             self.table: gr.update(value=file, interactive=bool(file)),
         }
 

@@ -136,19 +136,19 @@ def seconds(value: float) -> str:
 
 def settings(asked: Mapping[str, Any]) -> list[list[str]]:
     """(name, value) of everything that a run was asked with."""
-    found = [["Method", method_label(asked) or label_of(str(asked.get("model", "")))]]
+    rows = [["Method", method_label(asked) or label_of(str(asked.get("model", "")))]]
     given = asked.get("actor") or asked.get("motion")
     if isinstance(given, Mapping):
-        found.append(["Given", str(given.get("name", ""))])
+        rows.append(["Given", str(given.get("name", ""))])
     if "actor" in asked:
-        found.append(["The given person", _ROLES.get(str(asked.get("role")), "")])
+        rows.append(["The given person", _ROLES.get(str(asked.get("role")), "")])
     for key, name in _SETTINGS:
         value = asked.get(key)
         if value is not None:
             if isinstance(value, bool):
                 value = "on" if value else "off"
-            found.append([name, f"{value:g}" if key != "seed" and not isinstance(value, str) else str(value)])
-    return [pair for pair in found if pair[1]]
+            rows.append([name, f"{value:g}" if key != "seed" and not isinstance(value, str) else str(value)])
+    return [pair for pair in rows if pair[1]]
 
 
 def method_label(asked: Mapping[str, Any]) -> str:
