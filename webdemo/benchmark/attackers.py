@@ -8,7 +8,6 @@ import base64
 import contextlib
 import itertools
 from collections import Counter
-from pathlib import Path
 from typing import Any, cast
 
 import httpx
@@ -38,8 +37,8 @@ LARGE = 2
 """Files at a time, of many markers and as many frames as an upload may have."""
 FRAMES = 24_000
 """Of each of them: 48 MB."""
-_HANDS = ROOT / "static" / "examples" / "shake-hands.npz"
-_WAVE = ROOT / "static" / "examples" / "wave.npz"
+CLIP, WAVE = (ROOT / "static" / "examples" / name for name in ("shake-hands.npz", "wave.npz"))
+"""The file that is uploaded, and the clip that plays over and over in a live stream."""
 
 
 class _Refusing(httpx.AsyncHTTPTransport):
@@ -80,7 +79,7 @@ def _count(answer: httpx.Response, what: str, counts: Counter[str]) -> bool:
 
 async def _fill(client: httpx.AsyncClient, counts: Counter[str]) -> None:
     """Sends contact sheets and generations, of which nobody fetches the results."""
-    sent = await client.post("gradio_api/upload", files={"files": (Path(_HANDS).name, _HANDS.read_bytes())})
+    sent = await client.post("gradio_api/upload", files={"files": (CLIP.name, CLIP.read_bytes())})
     file = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
     sheet = [file, "png", "bodies", "light", "threequarter", 24, 640, 360, "", 0, "", ""]
     run = ["Two people dance together.", 5, 0, 2, 3, 20, 0.7, "ddim", "intergen", 1]
@@ -99,7 +98,7 @@ async def _fill(client: httpx.AsyncClient, counts: Counter[str]) -> None:
 
 async def _flood(client: httpx.AsyncClient, counts: Counter[str]) -> None:
     """Sends long messages to one stream, many at once, and opens it again where it has ended."""
-    poses = np.rint(1000 * read_actor(_WAVE, person="a")[0].positions).astype("<i2")
+    poses = np.rint(1000 * read_actor(WAVE, person="a")[0].positions).astype("<i2")
     data = base64.b64encode(poses[np.arange(POSES) % len(poses)].tobytes()).decode()
     outcomes = {200: "messages_answered", 409: "messages_replaced"}
     while True:
@@ -188,7 +187,7 @@ async def _send_large(client: httpx.AsyncClient, counts: Counter[str]) -> None:
 
 def large_trc() -> bytes:
     """Markers of a still body and 160 points beside it, in :data:`FRAMES` frames."""
-    pose = read_actor(_WAVE, person="a")[0]
+    pose = read_actor(WAVE, person="a")[0]
     parts = {"hip": "Hip", "knee": "Knee", "ankle": "Ankle", "shoulder": "Shoulder", "elbow": "Elbow", "wrist": "Wrist"}
     joints = dict(zip(pose.skeleton.joint_names, pose.positions[0], strict=True))
     points = {

@@ -26,16 +26,12 @@ from motion import FPS, InputError
 from webdemo.inference.requests.actor import read_actor
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 
-from .attackers import ATTACKERS, attack
+from .attackers import ATTACKERS, CLIP, WAVE, attack
 from .jobs import KINDS, SHEET, Job
-from .server import ROOT, serving, wait_until
+from .server import serving, wait_until
 
 PROBE_EVERY = 1.0
 """Seconds between two looks at how quickly the server answers."""
-CLIP = ROOT / "static" / "examples" / "shake-hands.npz"
-"""The file that is uploaded for reactions and predictions."""
-WAVE = ROOT / "static" / "examples" / "wave.npz"
-"""The clip that plays over and over in a live stream."""
 BETWEEN, MOST_POSES = 1 / 15, 15
 """Seconds between two messages of a live stream, and poses in each."""
 GOALS: dict[str, tuple[float, float]] = {

@@ -84,6 +84,22 @@ def test_many_tiny_files_are_as_much_as_a_large_one(tmp_path: Path) -> None:
     assert sum(path.is_file() for path in scratch.uploads.rglob("*")) <= MB // LEAST_BYTES
 
 
+def test_an_upload_counts_no_files_of_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """64,000 tiny files of strangers took 2 s of everybody's uploads; what is refused takes no room of others."""
+    scratch = Scratch(tmp_path / "s", 10 * MB)
+    put(scratch.uploads / "eve", "file", age=0, size=4 * MB)
+    scratch.clean()
+    counted: list[str] = []
+    monkeypatch.setattr(scratch, "used", lambda name: counted.append(name) or 0)
+    for _ in range(3):
+        with pytest.raises(InputError, match="no room"):
+            scratch.admit("mallory", "", 7 * MB, 100 * MB)
+    scratch.admit("ada", "", 5 * MB, 100 * MB)
+    with pytest.raises(InputError, match="no room"):
+        scratch.admit("bob", "", 2 * MB, 100 * MB)
+    assert "eve" not in counted
+
+
 def test_new_names_bring_no_more_room_to_an_address(tmp_path: Path) -> None:
     scratch = Scratch(tmp_path / "s", 10 * MB)
     for number in range(5):

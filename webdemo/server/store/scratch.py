@@ -30,7 +30,7 @@ KEPT_SECONDS = 7200.0
 """Seconds after which a file is removed; the history keeps what is needed to make it again."""
 IN_USE_SECONDS = 60.0
 """Files younger than this are kept in any case, since they may be in use."""
-LEAST_BYTES = 2**15
+LEAST_BYTES = 2**17
 """What a file weighs at least: each takes blocks of the disk and time at every count, also where it is empty."""
 _File = tuple[float, int, str]
 """When it was made, its weight in bytes and its path."""
@@ -50,6 +50,7 @@ class Scratch:
     def __init__(self, folder: Path, most_bytes: float) -> None:
         self.folder, self.most_bytes = folder, most_bytes
         self._addresses: dict[str, str] = {}
+        self._weights: dict[str, float] = {}  # of each person's files, when they last stored one or all were counted
         shutil.rmtree(folder, ignore_errors=True)
         make_folder(self.uploads)
 
@@ -79,19 +80,19 @@ class Scratch:
             InputError: if there is too little room even then.
         """
         own = self.used(person)
-        total = sum(size for _, size, _ in _files(self.folder))
-        missing = max(own + size - allowed, total + size - self.most_bytes)
+        others = {name: weight for name, weight in list(self._weights.items()) if name != person}
+        missing = max(own + size - allowed, sum(others.values()) + own + size - self.most_bytes)
         if address:
             self._addresses[person] = address
-            others = [name for name, home in self._addresses.items() if home == address]
-            near = sum(self.used(name) for name in others)
-            missing = max(missing, near + size - ADDRESS_SHARE * self.most_bytes)
+            near = sum(weight for name, weight in others.items() if self._addresses.get(name) == address)
+            missing = max(missing, near + own + size - ADDRESS_SHARE * self.most_bytes)
         if missing > 0 and self._remove_oldest(self.uploads / person, missing)[1] < missing:
             megabytes = math.ceil(10 * size / 2**20) / 10  # never "0 MB"
             raise InputError(
                 f"There is no room for {megabytes:,g} MB more beside your uploads and files for download: use a "
                 "smaller file, remove runs of the history, or wait until the older ones are gone."
             )
+        self._weights[person] = own + size
 
     def clean(self, keep: Collection[str] = (), allowed: float = math.inf) -> int:
         """Removes files that are too old, then the oldest of each person who has too many; returns their number.
@@ -109,7 +110,8 @@ class Scratch:
         for folder in list(self.uploads.iterdir()):
             if (missing := self.used(folder.name) - allowed) > 0:
                 gone += self._remove_oldest(folder, missing, keep)[0]
-        self._addresses = {name: home for name, home in self._addresses.items() if (self.uploads / name).exists()}
+        self._weights = {folder.name: self.used(folder.name) for folder in self.uploads.iterdir()}
+        self._addresses = {name: home for name, home in self._addresses.items() if name in self._weights}
         self._drop_empty_folders(now)
         return gone
 
