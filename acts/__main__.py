@@ -39,9 +39,9 @@ def check_entry(name: str, entry: Entry, folders: tuple[Path, ...] = ()) -> Iter
         yield f"{where}: alone = “{entry.alone}” is not an act."
     for sentence in entry.reads if entry.shown else ():
         plan = read(sentence, folders)
-        found = [act.act for act in plan.acts if act.happens]
-        if name not in found:
-            yield f"{where}: “{sentence}” is not read as {name} but as {', '.join(found) or 'nothing'}."
+        read_acts = [act.act for act in plan.acts if act.happens]
+        if name not in read_acts:
+            yield f"{where}: “{sentence}” is not read as {name} but as {', '.join(read_acts) or 'nothing'}."
     for sentence in () if entry.shown else entry.reads:
         if acts := [act.act for act in read(sentence, folders).acts]:
             yield f"{where}: “{sentence}” is read as {', '.join(acts)}, and nothing of it can be shown."

@@ -204,16 +204,16 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
 def _read_by(token: Token, start: int, stop: int, plan: Plan, known: Lexicon, parsed: Parse) -> str | None:
     """The id of the act that a word was read for and that does not say it; "" where one says it, None for no act."""
     around = [act.words for act in plan.acts if act.words and act.words.start <= start and stop <= act.words.stop]
-    found = None
+    reader = None
     for act in plan.acts:
         entry, own = known.entries.get(act.act), act.words
         near = own is None or any(own.start < span.stop and span.start < own.stop for span in around)
         if entry is not None and near:
             if _is_said(token, act, entry, parsed):
                 return ""
-            if found is None and _is_read(token, act, entry, parsed):
-                found = act.id
-    return found
+            if reader is None and _is_read(token, act, entry, parsed):
+                reader = act.id
+    return reader
 
 
 def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
@@ -281,9 +281,9 @@ def said_words(texts: tuple[str, ...]) -> frozenset[str]:
 @lru_cache(maxsize=1024)
 def _verbs(captions: tuple[str, ...]) -> tuple[str, ...]:
     """The verbs of captions, and with what stands behind them where that makes another: "pick_up"."""
-    found = [verb for text in captions for verb in _VERB.findall(text)]
+    verbs = [verb for text in captions for verb in _VERB.findall(text)]
     pairs = (f"{verb}_{word}" for text in captions for verb, word in _PHRASAL.findall(text))
-    return tuple(dict.fromkeys([*found, *filter(wordnet.senses, pairs)]))
+    return tuple(dict.fromkeys([*verbs, *filter(wordnet.senses, pairs)]))
 
 
 @lru_cache(maxsize=4096)

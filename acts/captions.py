@@ -198,14 +198,14 @@ def of_each(acts: Sequence[Act], known: Lexicon) -> tuple[str, str]:
     done = [act for act in acts if act.happens and act.act in known.entries and known.entries[act.act].shown]
     if any(len(act.agents) == 2 or known.entries[act.act].mutual for act in done):
         return "", ""
-    found: dict[str, list[str]] = {"a": [], "b": []}
+    told: dict[str, list[str]] = {"a": [], "b": []}
     for act in done:
         who = act.agents[0]
         own, other = _NAMES[who], _NAMES[other_of(who)]
         words = worded(act, caption_of(act, known.entries[act.act])).removeprefix(f"{own} ")
         words = words.replace(f"{own}'s", "their").replace(own, "them").replace(other, "the other person")
-        found[who].append(words)
-    a, b = (f"One person {' and '.join(words)}." if words else "" for words in (found["a"], found["b"]))
+        told[who].append(words)
+    a, b = (f"One person {' and '.join(words)}." if words else "" for words in (told["a"], told["b"]))
     return a, b
 
 

@@ -72,9 +72,9 @@ class Verdict:
 
     def to_dict(self) -> dict[str, Any]:
         """As it stands in a manifest."""
-        found: dict[str, Any] = {"act": self.act, "words": self.words, "done": self.done, "measure": self.measure}
-        found |= {"unchecked": list(self.unchecked)} if self.unchecked else {}
-        return found | ({"wrote": self.wrote} if self.wrote else {})
+        row: dict[str, Any] = {"act": self.act, "words": self.words, "done": self.done, "measure": self.measure}
+        row |= {"unchecked": list(self.unchecked)} if self.unchecked else {}
+        return row | ({"wrote": self.wrote} if self.wrote else {})
 
 
 def checked(plan: Plan, motion: Duet | Motion) -> tuple[Verdict, ...]:
@@ -95,11 +95,11 @@ def checked(plan: Plan, motion: Duet | Motion) -> tuple[Verdict, ...]:
         if motion.a.skeleton.joint_names != SMPL22.joint_names:
             raise ValueError("Acts are checked on SMPL's 22 joints: bring the motion there first (to_smpl).")
         motion = Motion(motion.positions, motion.fps)
-    found: dict[str, Verdict] = {}
+    verdicts: dict[str, Verdict] = {}
     for group in plan.beats():
         for act in group:
-            found[act.id] = _verdict(act, plan, motion, known, found)
-    return tuple(found[act.id] for act in plan.acts)
+            verdicts[act.id] = _verdict(act, plan, motion, known, verdicts)
+    return tuple(verdicts[act.id] for act in plan.acts)
 
 
 def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mapping[str, Verdict]) -> Verdict:
@@ -225,21 +225,21 @@ def _chain(act: Act, plan: Plan) -> list[str]:
                 after[other.id].append(relation.act)
             elif relation.kind in ("before", "until"):
                 after[relation.act].append(other.id)
-    found: list[str] = []
+    steps: list[str] = []
     left = list(after[act.id])
     while left:
         name = left.pop(0)
-        if name not in found and name != act.id:
-            found.append(name)
+        if name not in steps and name != act.id:
+            steps.append(name)
             left += after[name]
-    return found
+    return steps
 
 
 def _seen(act: Act, known: Lexicon) -> list[str]:
     """The predicates by which an act is seen, one for each agent; none for one that is true all along."""
     entry = known.entries[act.act]
-    found = [mask for who in act.agents for rule in rules_of(act, entry, who)[:1] for mask in masks(rule)[:1]]
-    return [mask for mask in found if not mask.startswith("stays(")]
+    spans = [mask for who in act.agents for rule in rules_of(act, entry, who)[:1] for mask in masks(rule)[:1]]
+    return [mask for mask in spans if not mask.startswith("stays(")]
 
 
 # ---- rules -----------------------------------------------------------------------------------------------

@@ -400,4 +400,4 @@ def best(frames: Mapping[str, list[tuple[str, Frame]]], event: Event) -> tuple[s
             if form is event and event.noun is not None and handed:  # "gives a hug" hands nothing over
                 match = replace(match, score=match.score - 5.0)
             fitting.append((name, frame, match))
-    return max(fitting, key=lambda found: (found[2].score, found[2].own, -len(found[1].elements)), default=None)
+    return max(fitting, key=lambda each: (each[2].score, each[2].own, -len(each[1].elements)), default=None)

@@ -218,9 +218,9 @@ _WORD = re.compile(r"[a-z]+(?:'s)?")
 
 @lru_cache(maxsize=1)
 def _tables() -> tuple[dict[str, str], frozenset[str]]:
-    found = tomllib.loads(NOUNS.read_text(encoding="utf-8"))
-    kinds = {noun: kind for kind, nouns in found["nouns"].items() for noun in nouns}
-    return kinds, frozenset(found["places"]["floor"])
+    tables = tomllib.loads(NOUNS.read_text(encoding="utf-8"))
+    kinds = {noun: kind for kind, nouns in tables["nouns"].items() for noun in nouns}
+    return kinds, frozenset(tables["places"]["floor"])
 
 
 def kind_of(noun: str) -> str:

@@ -191,16 +191,16 @@ class Arguments:
             self._phrase(token, who, event)
 
     def _phrase(self, token: Token, who: str, event: Event) -> None:
-        found = False
+        taken = False
         self.seen.add(token.i)
         for child in token.children:
             self.seen.add(child.i)
             if child.dep_ == "pcomp":
-                found = True
+                taken = True
                 if child.pos_ in ("ADV", "ADP"):  # "from behind"
                     event.words += [token.lower_, child.lower_]
             elif child.dep_ in ("pobj", "obj"):
-                found = True
+                taken = True
                 part = next((c for c in child.children if child.lemma_ == "time" and self._words.part(c.lower_)), None)
                 if part is not None:  # "on the back four times"
                     event.times, child = int(self._amount(child)), part
@@ -218,12 +218,12 @@ class Arguments:
             elif child.dep_ == "prep":  # "up to her", "over to him", "out of the room"
                 event.words.append(token.lower_)
                 self._preposition(child, who, event)
-                found = True
+                taken = True
         if token.lower_ == "from":  # "from behind"
             event.adverbs += [
                 f"from {c.lower_}" for c in token.children if c.lower_ in closed("from where") and not c.n_rights
             ]
-        if not found:
+        if not taken:
             event.words.append(token.lower_)
             event.particles.append(token.lower_)
             self._direction(token.lower_, event)

@@ -233,8 +233,8 @@ class Absolute:
 def absolutes(doc: Doc) -> Iterator[Absolute]:
     """The phrases of a text, in its order."""
     for token in doc:
-        if token.lower_ == "with" and (found := _behind(token)) is not None:
-            yield found
+        if token.lower_ == "with" and (behind := _behind(token)) is not None:
+            yield behind
 
 
 def _behind(preposition: Token) -> Absolute | None:

@@ -49,10 +49,10 @@ class Matcher:
 
     def find(self, event: Event) -> Found | None:
         """The act that fits an event best; None if none does."""
-        found = max(self._said_by_noun(event), key=lambda each: each[2].score, default=None)
-        if found is None or found[2].score < LEAST_SCORE:
-            found = self._synonym(event)
-        return found
+        match = max(self._said_by_noun(event), key=lambda each: each[2].score, default=None)
+        if match is None or match[2].score < LEAST_SCORE:
+            match = self._synonym(event)
+        return match
 
     def _said_by_noun(self, event: Event) -> Iterator[Found]:
         """The best act of an event and of what its noun stands for: with another empty verb, or done to the other."""
@@ -67,13 +67,13 @@ class Matcher:
             if plain is None or (to_other is not None and to_other[0] == plain[0]):  # "makes jumps" jumps at nobody
                 forms.append(done)
         for form in forms:
-            found = best(self._known.frames, form)
-            if found is not None and (form.lemma == event.lemma or not found[2].thing):
-                yield found
+            match = best(self._known.frames, form)
+            if match is not None and (form.lemma == event.lemma or not match[2].thing):
+                yield match
 
     def _synonym(self, event: Event) -> Found | None:
         """The act whose verbs mean what this one does, of those whose frames fit."""
-        found: Found | None = None
+        nearest: Found | None = None
         about = vocabulary().verbs["begins"] | vocabulary().verbs["ends"]
         walks = event.object is not None and event.lemma in vocabulary().verbs["goes"]
         deed = event.object is not None and is_act(event.object.lemma) and event.lemma in vocabulary().light
@@ -84,8 +84,8 @@ class Matcher:
         for cost, (name, frame, match) in self._alike(event):
             worth = match.score - _SYNONYM * cost
             if worth > most:
-                most, found = worth, (name, frame, match)
-        return found
+                most, nearest = worth, (name, frame, match)
+        return nearest
 
     def _alike(self, event: Event) -> Iterator[tuple[float, Found]]:
         lemma, event = _phrasal(event)
@@ -109,9 +109,9 @@ class Matcher:
                     cost = rank + level + other
                     if verb == lemma or cost > _FARTHEST or ("_" in verb and not bodily):  # "lets down": disappoints
                         continue
-                    found = best(self._frames, _as(event, verb))
-                    if found is not None and found[2].score >= 0.0:
-                        yield cost, found
+                    candidate = best(self._frames, _as(event, verb))
+                    if candidate is not None and candidate[2].score >= 0.0:
+                        yield cost, candidate
 
     def nearest(self, event: Event) -> tuple[str, ...]:
         """Names of acts that an event that was not read may mean."""
@@ -294,7 +294,7 @@ _OWN = {
 _EACH = Ref("each", "ab", "other")
 
 
-def seated(event: Event, found: Found, known: Lexicon, told: Iterable[str]) -> Event | None:
+def seated(event: Event, match: Found, known: Lexicon, told: Iterable[str]) -> Event | None:
     """The event that somebody sits where a phrase says so: "reads in his armchair".
 
     Args:
@@ -306,9 +306,9 @@ def seated(event: Event, found: Found, known: Lexicon, told: Iterable[str]) -> E
     seat = next((ref for word, ref in event.prepositions if word in ("in", "on") and ref.lemma in seats), None)
     if seat is None:
         return None
-    shown = {shape.do for shape in known.entries[found[0]].stage}
+    shown = {shape.do for shape in known.entries[match[0]].stage}
     who, other = event.subject, event.object
-    if found[2].patient and other is not None and other.kind == "person" and other.last <= seat.first:
+    if match[2].patient and other is not None and other.kind == "person" and other.last <= seat.first:
         who = other  # "pushes an old man in a wheelchair"
     elif not shown <= BESIDE | {"stay"}:
         return None
@@ -341,21 +341,21 @@ def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
         yield formed
 
 
-def is_next_to(event: Event, found: Found, known: Lexicon) -> bool:
+def is_next_to(event: Event, match: Found, known: Lexicon) -> bool:
     """True for what is done beside the other: "lies down next to her"."""
-    shown = {shape.do for shape in known.entries[found[0]].stage}
+    shown = {shape.do for shape in known.entries[match[0]].stage}
     near = (p for p, ref in event.prepositions if ref.kind == "person")
     beside = any(p in ("beside", "alongside") or (p == "to" and "next" in event.words) for p in near)
-    return bool(found[2].patient) and "posture" in shown and beside
+    return bool(match[2].patient) and "posture" in shown and beside
 
 
-def held(event: Event, found: Found, known: Lexicon, find: Find) -> Iterator[tuple[Event, Found]]:
+def held(event: Event, match: Found, known: Lexicon, find: Find) -> Iterator[tuple[Event, Found]]:
     """The postures that phrases beside an act name: "begs on his knees", but not "leans on his knees"."""
-    agents = found[2].agents
+    agents = match[2].agents
     elements = (each for _, frame in known.frames.get(event.lemma, ()) for each in frame.elements)
     rests = event.lemma != "be" and any("on" in each.prepositions and each.slot != "place" for each in elements)
-    rests = rests or any(shape.do == "posture" for shape in known.entries[found[0]].stage)
-    rest = [event.prepositions[i] for i in found[2].rest if not (rests and event.prepositions[i][0] == "on")]
+    rests = rests or any(shape.do == "posture" for shape in known.entries[match[0]].stage)
+    rest = [event.prepositions[i] for i in match[2].rest if not (rests and event.prepositions[i][0] == "on")]
     for preposition, ref in rest:
         open_ = not ref.who and (preposition == "with" or (_carries(ref) and ref.family != "knee"))
         if ref.kind != "part" or not (open_ or ref.who == agents) or (preposition == "on" and not _carries(ref)):
@@ -368,7 +368,7 @@ def held(event: Event, found: Found, known: Lexicon, find: Find) -> Iterator[tup
             continue
         posture = event.bare("stand", subject=Ref("person", agents), words=words, prepositions=[(preposition, ref)])
         posed = find(posture)
-        if posed is not None and posed[0] != found[0] and not posed[2].rest and posed[2].score > 1.5:
+        if posed is not None and posed[0] != match[0] and not posed[2].rest and posed[2].score > 1.5:
             yield posture, posed
 
 

@@ -81,15 +81,15 @@ def parses(text: str, speller: Speller) -> Iterator[Parse]:
 
 def _stopped(text: Text, speller: Speller) -> Parse:
     """The parse of a text with the stops that it lacks."""
-    found = _with_verbs(text, speller)
-    missing = frozenset(found.text.number(token.idx) for token in breaks(found.doc, found.lemmas))
-    return _with_verbs(text.broken(missing), speller) if missing else found
+    parsed = _with_verbs(text, speller)
+    missing = frozenset(parsed.text.number(token.idx) for token in breaks(parsed.doc, parsed.lemmas))
+    return _with_verbs(text.broken(missing), speller) if missing else parsed
 
 
 def _with_verbs(text: Text, speller: Speller) -> Parse:
-    found = Parse(text, parse(text.parsed))
-    changes = speller.verbs_found(found.doc)
-    return found.changed(changes) if changes else found
+    parsed = Parse(text, parse(text.parsed))
+    changes = speller.verbs_found(parsed.doc)
+    return parsed.changed(changes) if changes else parsed
 
 
 # ---- missing stops -------------------------------------------------------------------------------------

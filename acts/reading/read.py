@@ -129,75 +129,75 @@ class _Planner:
         inner = [i for i, other in enumerate(self._events) if other.beside == number and other.joint == "comp"]
         if self._in_turn(number, event) or self._with_hand(number, event) or self._repeated(number, event, bool(inner)):
             return
-        found = self._matcher.find(event)
+        match = self._matcher.find(event)
         if (theirs := of_the_last(event, self._acts)) is not None and (other := self._matcher.find(theirs)) is not None:
             touches = self._known.entries[other[0]].group in ("touch", "care") and other[2].patient
             definite = theirs.object is not None and theirs.object.definite  # "takes his ankle and bends the knee"
-            if touches and (definite or found is None or other[2].score >= found[2].score):
-                event, found = theirs, other
-        if self._about_another(event) and inner and (found is None or found[2].score < 2.4):
+            if touches and (definite or match is None or other[2].score >= match[2].score):
+                event, match = theirs, other
+        if self._about_another(event) and inner and (match is None or match[2].score < 2.4):
             return
-        if found is None and event.lemma == "be":
+        if match is None and event.lemma == "be":
             placed = replace(event, lemma="stand", ongoing=True, state=True)
-            found = self._matcher.find(placed) if event.prepositions or event.particles else None
-            found = None if found is not None and (found[0] == "stand-still" or found[2].rest) else found
-            event = placed if found is not None else event
-        if found is None:
+            match = self._matcher.find(placed) if event.prepositions or event.particles else None
+            match = None if match is not None and (match[0] == "stand-still" or match[2].rest) else match
+            event = placed if match is not None else event
+        if match is None:
             for whole, cost in completed(number, event, self._events, self._acts, self._known, self._reader.cast.alone):
                 self.cost += cost
-                if (found := self._matcher.find(whole)) is not None:
+                if (match := self._matcher.find(whole)) is not None:
                     event = whole
                     break
         formed = self._found(formations(event, self._formations(number)))
-        vague = found is None or event.lemma in vocabulary().verbs["vague"] | vocabulary().verbs["begins"]
-        if vague and not (found is not None and inner) and (noun := self._noun(event, found)) is not None:
-            event, found = noun
+        vague = match is None or event.lemma in vocabulary().verbs["vague"] | vocabulary().verbs["begins"]
+        if vague and not (match is not None and inner) and (noun := self._noun(event, match)) is not None:
+            event, match = noun
         elif formed and (
             vague or event.lemma in closed("shows nothing") | closed("stands") or formed[0][0].lemma == event.lemma
         ):
-            (event, found), *formed = formed
-        if found is not None and not self._known.entries[found[0]].shown:
+            (event, match), *formed = formed
+        if match is not None and not self._known.entries[match[0]].shown:
             self._unread.append(Unread(words=self._span(number), why="Bodies cannot show this."))
-        elif found is not None:
-            if inner and any(self._events[i].lemma in f for f in (e.words for e in found[1].elements) for i in inner):
+        elif match is not None:
+            if inner and any(self._events[i].lemma in f for f in (e.words for e in match[1].elements) for i in inner):
                 self._taken.update(inner)
-            self._add(number, event, *found)
-            self._companions(number, event, found, formed)
+            self._add(number, event, *match)
+            self._companions(number, event, match, formed)
         elif event.lemma not in closed("shows nothing") and not (inner and self._about_another(event)):
             self._not_read(number, event)
 
     def _found(self, events: Iterable[Event]) -> list[tuple[Event, Found]]:
         """The events that mean an act, with it."""
         each = ((event, self._matcher.find(event)) for event in events)
-        return [(event, found) for event, found in each if found is not None]
+        return [(event, match) for event, match in each if match is not None]
 
-    def _noun(self, event: Event, found: Found | None) -> tuple[Event, Found] | None:
+    def _noun(self, event: Event, match: Found | None) -> tuple[Event, Found] | None:
         """The act that a noun beside a verb stands for, where the verb itself says little: "answers with a bow"."""
-        rest = range(len(event.prepositions)) if found is None else found[2].rest
+        rest = range(len(event.prepositions)) if match is None else match[2].rest
         nouns = self._found(other for _, other in noun_acts(event, self._known, rest))
         return nouns[0] if nouns else None
 
-    def _companions(self, number: int, event: Event, found: Found, formed: Sequence[tuple[Event, Found]]) -> None:
+    def _companions(self, number: int, event: Event, match: Found, formed: Sequence[tuple[Event, Found]]) -> None:
         """Adds the acts that the words beside a verb name."""
         of = str(len(self._acts))
         at_once = Relation(kind="with", act=of)
         told = {agent for act in self._acts[:-1] for agent in act.agents}
-        both = len(found[2].agents) == 2
-        shown = {shape.do for shape in self._known.entries[found[0]].stage}
+        both = len(match[2].agents) == 2
+        shown = {shape.do for shape in self._known.entries[match[0]].stage}
         for other, formation in formed:
-            if formation[0] == "canon" and both and not self._known.entries[found[0]].mutual:
+            if formation[0] == "canon" and both and not self._known.entries[match[0]].mutual:
                 self._in_canon()
-            elif formation[0] != found[0] and not (shown & {"go", "place"} and formation[0] == "form-line"):
+            elif formation[0] != match[0] and not (shown & {"go", "place"} and formation[0] == "form-line"):
                 self._add(number, other, *formation, beside=at_once)
-        if is_next_to(event, found, self._known):
+        if is_next_to(event, match, self._known):
             for other, line in self._found(formations(event, ["form line"])):
                 self._add(number, other, *line, beside=at_once)
-        for other, posture in held(event, found, self._known, self._matcher.find):
+        for other, posture in held(event, match, self._known, self._matcher.find):
             self._add(number, other, *posture, beside=at_once)
-        if (sits := seated(event, found, self._known, told)) is not None:
+        if (sits := seated(event, match, self._known, told)) is not None:
             for other, sat in self._found([sits]):
                 self._add(number, other, *sat, beside=at_once)
-        for preposition, noun in noun_acts(event, self._known, found[2].rest):
+        for preposition, noun in noun_acts(event, self._known, match[2].rest):
             kind = "after" if preposition == "into" else "with"
             for other, done in self._found([noun])[: self._acts[-1].id == of]:
                 self._add(number, other, *done, beside=Relation(kind=kind, act=of))  # type: ignore[arg-type]

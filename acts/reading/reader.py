@@ -39,9 +39,9 @@ class Reader:
         self.cast = Cast()
         self.cast.alone = names_one(doc)
         self.events: list[Event] = []
-        self._absolutes = {found.preposition.i: found for found in absolutes(doc)}
-        held = {token.i for found in self._absolutes.values() for token in (found.state, found.part)}
-        placed = {phrase.i for found in self._absolutes.values() for phrase in found.placed()}
+        self._absolutes = {absolute.preposition.i: absolute for absolute in absolutes(doc)}
+        held = {token.i for absolute in self._absolutes.values() for token in (absolute.state, absolute.part)}
+        placed = {phrase.i for absolute in self._absolutes.values() for phrase in absolute.placed()}
         self._tree = ClauseTree(doc, verbs, lemmas, forms, held)
         self._subjects = Subjects(self._tree, self.cast, self._event_of)
         self._arguments = Arguments(self.cast, verbs, held | self._absolutes.keys() | placed)
@@ -71,7 +71,7 @@ class Reader:
 
     def missed(self) -> Iterator[Token]:
         """Words with a meaning of their own that no event has taken up."""
-        held = {t.i for found in self._absolutes.values() for t in (found.part, found.state)}
+        held = {t.i for absolute in self._absolutes.values() for t in (absolute.part, absolute.state)}
         seen = self._arguments.seen | self._of.keys() | self.cast.seen.keys() | held
         for token in self.doc:
             own = token.dep_ not in _WITHIN and token.i not in seen
@@ -96,52 +96,52 @@ class Reader:
 
     def _postures(self) -> None:
         """Adds how parts of the body are held beside a clause: "with arms crossed"."""
-        for found in self._absolutes.values():
-            clause = self._clause_of(found)
-            subject = self._holder(found, clause)
+        for each in self._absolutes.values():
+            clause = self._clause_of(each)
+            subject = self._holder(each, clause)
             who = subject.who if subject is not None and subject.kind == "person" else ""
-            ref = reference(found.part, self.cast, who)
-            owner = Ref("person", ref.who) if ref.who and found.state.lower_ != "behind" else subject
-            first = found.part.idx if found.verb == "put" or found.state.i > found.part.i else found.state.idx
+            ref = reference(each.part, self.cast, who)
+            owner = Ref("person", ref.who) if ref.who and each.state.lower_ != "behind" else subject
+            first = each.part.idx if each.verb == "put" or each.state.i > each.part.i else each.state.idx
             event = Event(
-                found.verb or self._tree.lemma(found.state),
+                each.verb or self._tree.lemma(each.state),
                 owner,
                 ref,
                 first=first,
-                last=first + len(found.part),
+                last=first + len(each.part),
                 ongoing=True,
                 state=True,
             )
-            if found.verb == "put":
-                self._arguments.place(found.state, who, event)
-            elif found.verb == "hold" or found.state.lower_ in self._words.directions:
-                event.words.append(found.state.lower_)
-                event.direction = self._words.directions.get(found.state.lower_)
+            if each.verb == "put":
+                self._arguments.place(each.state, who, event)
+            elif each.verb == "hold" or each.state.lower_ in self._words.directions:
+                event.words.append(each.state.lower_)
+                event.direction = self._words.directions.get(each.state.lower_)
             else:
-                for phrase in (c for c in found.state.children if c.dep_ in ("prep", "advmod")):
+                for phrase in (c for c in each.state.children if c.dep_ in ("prep", "advmod")):
                     self._arguments.place(phrase, who, event)
-            for phrase in found.placed():
+            for phrase in each.placed():
                 self._arguments.place(phrase, who, event)
-            self._joints.append((event, found.preposition, "with", clause.i if clause is not None else None))
+            self._joints.append((event, each.preposition, "with", clause.i if clause is not None else None))
             self.events.append(event)
 
-    def _holder(self, found: Absolute, clause: Token | None) -> Ref | None:
+    def _holder(self, absolute: Absolute, clause: Token | None) -> Ref | None:
         """The person who holds a part of the body so: the clause's subject, where nothing says another."""
-        before = found.preposition.nbor(-1) if found.preposition.i else found.preposition
+        before = absolute.preposition.nbor(-1) if absolute.preposition.i else absolute.preposition
         if clause is None:  # "a person with one hand on the hip", "Both hands behind the back, chin up."
             held = self.cast.seen.get(before.i) or reference(before, self.cast, "")
             return held if held.kind == "person" else Ref("person", "ab")
         subject = self.events[self._of[clause.i]].subject
-        if before.pos_ in ("NOUN", "PROPN") and found.state.lower_ == "behind":
+        if before.pos_ in ("NOUN", "PROPN") and absolute.state.lower_ == "behind":
             return self.cast.seen.get(before.i, subject)  # "cuffs the thief, hands behind his back"
         return subject
 
-    def _clause_of(self, found: Absolute) -> Token | None:
+    def _clause_of(self, absolute: Absolute) -> Token | None:
         """The clause beside which a part of the body is held: the one above, else the nearest of its sentence."""
-        sentence = found.preposition.sent
-        above = next((t for t in found.preposition.ancestors if t.i in self._of), None)
+        sentence = absolute.preposition.sent
+        above = next((t for t in absolute.preposition.ancestors if t.i in self._of), None)
         own = [self.doc[i] for i in self._of if sentence.start <= i < sentence.end]
-        before = [token for token in own if token.i < found.preposition.i]
+        before = [token for token in own if token.i < absolute.preposition.i]
         return before[-1] if before and (above is None or above.i < before[-1].i) else above or next(iter(own), None)
 
     def _sort(self) -> None:
@@ -200,8 +200,8 @@ class Reader:
 
     def _is_mutual(self, event: Event) -> bool:
         """True for what the two do together even where one is named first."""
-        found = best(self._known.frames, event)
-        return found is not None and self._known.entries[found[0]].mutual
+        match = best(self._known.frames, event)
+        return match is not None and self._known.entries[match[0]].mutual
 
     def _owner(self, part: Ref, head: Token | None) -> Ref | None:
         """The person whose part of the body a phrase names: its owner, or whose clause it stands in."""

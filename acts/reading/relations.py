@@ -39,11 +39,11 @@ def related(
         repeated: ids of acts that do again what the one before does.
     """
     number_of = {name: number for number, name in of.items()}
-    found: dict[str, list[Relation]] = {act.id: [] for act in told}
+    relations: dict[str, list[Relation]] = {act.id: [] for act in told}
     acts = {act.id: act for act in told}
     for act in told:
         if act.id in beside:
-            found[act.id].append(beside[act.id])
+            relations[act.id].append(beside[act.id])
             continue
         kind, above = _joint(number_of[act.id], events, of)
         if above is None or of[above] == act.id:
@@ -54,9 +54,9 @@ def related(
         if kind == "who":
             kind = "while" if _goes(other, _LASTS, known) else "after"
         if kind == "after" and (other.already or _waits(other, known)):
-            talk = next((r.act for r in found[other.id] if r.kind == "while"), None)
+            talk = next((r.act for r in relations[other.id] if r.kind == "while"), None)
             # What follows "A talks while B waits" follows the talk.
-            other = acts[_last_after(talk, act.id, told, found, known)] if talk else other
+            other = acts[_last_after(talk, act.id, told, relations, known)] if talk else other
         if other.id == act.id:  # two clauses that the parser hangs on each other
             continue
         if kind == "conj":
@@ -71,10 +71,10 @@ def related(
         if kind == "after" and apart and (other.already or act.already or waits):
             kind = "while"  # what goes on, goes on
         if kind in _FOR_THE_OTHER:
-            found[other.id].append(Relation(kind=_FOR_THE_OTHER[kind], act=act.id))  # type: ignore[arg-type]
+            relations[other.id].append(Relation(kind=_FOR_THE_OTHER[kind], act=act.id))  # type: ignore[arg-type]
         else:
-            found[act.id].append(Relation(kind=kind if kind in _KINDS else "with", act=other.id))  # type: ignore[arg-type]
-    return [acts[act.id].model_copy(update={"order": tuple(found[act.id])}) for act in told]
+            relations[act.id].append(Relation(kind=kind if kind in _KINDS else "with", act=other.id))  # type: ignore[arg-type]
+    return [acts[act.id].model_copy(update={"order": tuple(relations[act.id])}) for act in told]
 
 
 def _joint(number: int, events: Sequence[Event], of: Mapping[int, str]) -> tuple[str, int | None]:
@@ -99,13 +99,13 @@ def _waits(act: Act, known: Lexicon) -> bool:
 
 
 def _last_after(
-    first: str, until: str, told: Sequence[Act], found: Mapping[str, Sequence[Relation]], known: Lexicon
+    first: str, until: str, told: Sequence[Act], relations: Mapping[str, Sequence[Relation]], known: Lexicon
 ) -> str:
     """The last of the acts that follow each other from ``first`` on, before the act ``until`` in the text."""
     for act in told:
         if act.id == until:
             break
-        follows = any(r.kind == "after" and r.act == first for r in found[act.id])
+        follows = any(r.kind == "after" and r.act == first for r in relations[act.id])
         first = act.id if follows and not _waits(act, known) else first
     return first
 

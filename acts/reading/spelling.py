@@ -80,13 +80,13 @@ def deeds(known: Lexicon) -> frozenset[str]:
 @lru_cache(maxsize=4)
 def _forms(verbs: frozenset[str]) -> dict[str, tuple[str, str]]:
     """The forms of verbs, as form → (lemma, ending)."""
-    found: dict[str, tuple[str, str]] = {}
+    forms: dict[str, tuple[str, str]] = {}
     for verb in verbs:
         for form, ending in ((verb, ""), (singular(verb), "s"), (gerund(verb), "ing"), (past(verb), "ed")):
-            found.setdefault(form, (verb, ending))
+            forms.setdefault(form, (verb, ending))
     for auxiliary in ("is", "has"):  # which are hardly ever verbs of their own
-        found.pop(auxiliary, None)
-    return found
+        forms.pop(auxiliary, None)
+    return forms
 
 
 def is_verb_form(word: str) -> bool:
@@ -174,7 +174,7 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
         doc: the text as it was parsed.
         forms: the forms of verbs, as form → (lemma, ending).
     """
-    found = {
+    mistaken = {
         token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0]) for token in _verbless(doc, forms)
     }
     last = ""  # the ending of the last finite verb of the sentence
@@ -186,11 +186,11 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
             or _coordinated(token, form[1], last)
             or _is_ordered(token, form[1])
         ):
-            found[token.idx] = (_safe(token, form[1]), form[0])
+            mistaken[token.idx] = (_safe(token, form[1]), form[0])
             last = form[1]
         elif token.pos_ in ("VERB", "AUX") and token.tag_ in _TAGS:
             last = _TAGS[token.tag_]
-    return found
+    return mistaken
 
 
 def deeds_done(doc: Doc, is_deed: Callable[[str], bool]) -> dict[int, tuple[str, str]]:

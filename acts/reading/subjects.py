@@ -209,10 +209,10 @@ class Subjects:
         if (told := self._told(token, head) or self._called(token) or self._named_before(token)) is not None:
             return told
         if token.dep_ in ("relcl", "acl", "amod") and token.head != head:
-            found = self._antecedent(token)
+            antecedent = self._antecedent(token)
             handles = token.tag_ == "VBG" and has(token, "dobj")
-            if found is None or found.kind != "part" or not handles or head is None:
-                return found
+            if antecedent is None or antecedent.kind != "part" or not handles or head is None:
+                return antecedent
             return self.of(head, self._tree.head(head))  # "they bump heads picking up a pencil"
         if head is not None and self._is_order(token):
             return Ref("person", "ab", first=token.idx, last=token.idx)
@@ -268,8 +268,8 @@ class Subjects:
         for child in (*token.children, *moving):
             if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
                 if child.tag_ in ("WP", "WDT") and (token.dep_ == "relcl" or child.lower_ == "who"):
-                    found = self._antecedent(token) if token.dep_ == "relcl" else None
-                    return found
+                    antecedent = self._antecedent(token) if token.dep_ == "relcl" else None
+                    return antecedent
                 if child.tag_ in ("VBZ", "VBD") and (known := self._found.get(child.i)) is not None:
                     return known  # "she leans back, then kicks"
                 ref = self._cast.seen.get(child.i) or reference(child, self._cast, "")
@@ -349,8 +349,8 @@ def state_of(token: Token, event: Event, known: Lexicon) -> Event | None:
     if not is_passive(token) or has(token, "agent"):
         return None
     state = replace(event, lemma="be", words=[*event.words, token.lower_], ongoing=True)
-    found = best(known.frames, state)
-    named = found is not None and any(token.lower_ in element.words for element in found[1].elements)
+    match = best(known.frames, state)
+    named = match is not None and any(token.lower_ in element.words for element in match[1].elements)
     return state if named else None
 
 

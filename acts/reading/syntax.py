@@ -112,7 +112,7 @@ def seems(token: Token) -> bool:
     words = vocabulary()
     if token.lemma_.lower() not in words.verbs["seems"]:
         return False
-    found = False
+    answer = False
     for child in token.children:
         text = child.lower_
         likened = _LIKENED & {text, *(c.lower_ for c in child.children)}
@@ -121,10 +121,10 @@ def seems(token: Token) -> bool:
             and (child.pos_ == "ADJ" or any(c.dep_ == "aux" and c.tag_ == "TO" for c in child.children))
         )
         if (says_how and text not in words.directions) or (likened and child.dep_ in _BESIDE):
-            found = True
+            answer = True
         elif child.dep_ in ("prep", "prt", "dobj") or text in closed("about") or text in words.directions:
             return False
-    return found
+    return answer
 
 
 def is_likeness(token: Token) -> bool:

@@ -344,8 +344,8 @@ class Text:
 
 def tokens(text: str) -> list[tuple[str, int, int]]:
     """The words, numbers and marks of a text, with plain quotes, and their offsets in it."""
-    found = _TOKEN.finditer(text)
-    return [("".join(_QUOTES.get(c, c) for c in match[0]), match.start(), match.end()) for match in found]
+    matches = _TOKEN.finditer(text)
+    return [("".join(_QUOTES.get(c, c) for c in match[0]), match.start(), match.end()) for match in matches]
 
 
 def without_speech(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, int]]:
@@ -379,20 +379,20 @@ def names(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
         words: of the text, as written.
         is_verb: says whether a word is a form of a verb.
     """
-    found = {}
+    letters = {}
     upper_b = any(word in ("B", "B's") for word in words)
     for i, word in enumerate(words):
         if word in ("A's", "B's"):
-            found[i] = f"{A_NAME if word[0] == 'A' else B_NAME}'s"
+            letters[i] = f"{A_NAME if word[0] == 'A' else B_NAME}'s"
         elif word in ("P1", "P2", "p1", "p2"):
-            found[i] = A_NAME if word[1] == "1" else B_NAME
+            letters[i] = A_NAME if word[1] == "1" else B_NAME
         elif word == "B":
-            found[i] = B_NAME
+            letters[i] = B_NAME
         elif word == "A" and (
             (upper_b and (i + 1 == len(words) or not _takes_article(words, i))) or _verb_follows(words, i, is_verb)
         ):
-            found[i] = A_NAME
-    return found
+            letters[i] = A_NAME
+    return letters
 
 
 def _verb_follows(words: list[str], i: int, is_verb: Callable[[str], bool]) -> bool:

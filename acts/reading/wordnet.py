@@ -59,11 +59,11 @@ def people() -> dict[str, str]:
 @cache
 def _nouns() -> dict[str, frozenset[str]]:
     """Nouns by kind: "animal", "person" for a rarer sense, "act" for those of what a verb so spelt means."""
-    found: dict[str, set[str]] = {}
+    by_kind: dict[str, set[str]] = {}
     for line in NOUNS.read_text(encoding="utf-8").splitlines():
         noun, kind = line.split("\t")
-        found.setdefault(kind, set()).add(noun)
-    return {kind: frozenset(nouns) for kind, nouns in found.items()}
+        by_kind.setdefault(kind, set()).add(noun)
+    return {kind: frozenset(nouns) for kind, nouns in by_kind.items()}
 
 
 def is_animal(noun: str) -> bool:
@@ -122,11 +122,11 @@ def meanings(lemma: str, most: int = 3, height: int = 2) -> list[tuple[str, floa
         most: senses that are looked at; each costs 1 more than the one before.
         height: steps up; each costs 1.
     """
-    verbs, found = _verbs(), dict[str, float]()
+    verbs, costs = _verbs(), dict[str, float]()
     for rank, sense in enumerate(verbs.senses.get(lemma, ())[:most]):
         level, cost = [sense], float(rank)
         for _ in range(height + 1):
             for each in level:
-                found[each] = min(cost, found.get(each, cost))
+                costs[each] = min(cost, costs.get(each, cost))
             level, cost = [up for each in level for up in verbs.above.get(each, ())], cost + 1.0
-    return sorted(found.items(), key=lambda item: item[1])
+    return sorted(costs.items(), key=lambda item: item[1])

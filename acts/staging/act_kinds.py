@@ -160,7 +160,7 @@ def standing_by(acts: Sequence[Act], done: Done, busy: Collection[str], known: L
         busy: who gestures, goes somewhere or stands before something.
         known: the lexicon.
     """
-    found = set()
+    people = set()
     for who in {*"ab"} - {*busy}:
         own = [(act, e) for act, e in done if who in act.agents]
         theirs = [(act, e) for act, e in done if other_of(who) in act.agents and who not in act.agents]
@@ -170,8 +170,8 @@ def standing_by(acts: Sequence[Act], done: Done, busy: Collection[str], known: L
         if touched or (own and not waits):
             continue
         if waits or denied or any(not walks(e) for _, e in theirs):
-            found.add(who)
-    return frozenset(found)
+            people.add(who)
+    return frozenset(people)
 
 
 def _stays(act: Act, known: Lexicon) -> bool:
@@ -181,14 +181,14 @@ def _stays(act: Act, known: Lexicon) -> bool:
 
 def loose(done: Done, idle: Collection[str]) -> frozenset[str]:
     """The people whose hands have nothing to do, and whom the other does not touch."""
-    found = set()
+    people = set()
     for who in "ab":
         own = [(act, e) for act, e in done if who in act.agents]
         touched = any(reaches(act, e) for act, e in done if who not in act.agents)
         free = who in idle or (bool(own) and all(leaves_hands(act, e) for act, e in own))
         if free and not touched:
-            found.add(who)
-    return frozenset(found)
+            people.add(who)
+    return frozenset(people)
 
 
 def gesturing(gestures: Mapping[str, shapes.Gesture], moves: Sequence[Move], done: Done) -> frozenset[str]:

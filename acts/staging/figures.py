@@ -86,11 +86,11 @@ class Keys:
 @lru_cache(maxsize=1)
 def figures() -> Mapping[str, Keys]:
     """All figures by name."""
-    found = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
-    poses = {"stand": {}, **found["poses"]}
+    tables = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
+    poses = {"stand": {}, **tables["poses"]}
     return {
         name: Keys(*(_keys(rows.get(part, ()), poses) for part in ("into", "again", "out")))
-        for name, rows in found["figures"].items()
+        for name, rows in tables["figures"].items()
     }
 
 
@@ -133,8 +133,8 @@ def _wavering(at: Array, seed: int) -> Array:
     """Angles (N, angles) by which trunk and arms waver, each in its own time: nobody is as even as a drawing."""
     dice = np.random.default_rng(seed)
     periods, phases = dice.uniform(1.7, 4.3, len(NAMES)), dice.uniform(0.0, 2 * np.pi, len(NAMES))
-    found: Array = np.sin(2 * np.pi * at[:, None] / periods + phases) * _WAVERS
-    return found
+    angles: Array = np.sin(2 * np.pi * at[:, None] / periods + phases) * _WAVERS
+    return angles
 
 
 def _scheduled(course: Keys, times: int, length: float) -> tuple[Array, Array]:
@@ -177,25 +177,25 @@ def _keys(rows: Sequence[Mapping[str, Any]], poses: Mapping[str, Any]) -> tuple[
 def _row(row: Mapping[str, Any], poses: Mapping[str, Any]) -> Array:
     """The angles (1, angles) in radians of a row: those of its pose, with what it says beside."""
     said = _STANDS | poses[row.get("pose", "stand")] | {k: v for k, v in row.items() if k not in ("in", "pose")}
-    found = np.zeros(len(NAMES))
+    angles = np.zeros(len(NAMES))
     for name, value in said.items():
         if name in METRES:
-            found[NAMES.index(name)] = value
+            angles[NAMES.index(name)] = value
         elif name in SINGLE:
-            found[NAMES.index(name)] = np.deg2rad(value)
+            angles[NAMES.index(name)] = np.deg2rad(value)
         else:
             for side, own in zip(("left", "right"), np.broadcast_to(value, 2), strict=True):
-                found[NAMES.index(f"{side}_{name}")] = own if name == "free" else np.deg2rad(own)
-    return found[None]
+                angles[NAMES.index(f"{side}_{name}")] = own if name == "free" else np.deg2rad(own)
+    return angles[None]
 
 
 def _mirrored(rows: Array) -> Array:
     """Angles (N, angles) with left and right exchanged."""
     count = len(SINGLE) + len(METRES)
     left, right = rows[:, count : count + len(PAIRED)], rows[:, count + len(PAIRED) :]
-    found = np.concatenate([rows[:, :count], right, left], axis=1)
-    found[:, _ASIDE] *= -1.0
-    return found
+    mirrored = np.concatenate([rows[:, :count], right, left], axis=1)
+    mirrored[:, _ASIDE] *= -1.0
+    return mirrored
 
 
 def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Array | None, seed: int) -> list[Part]:
@@ -246,5 +246,5 @@ def _getting_up(scores: Sequence[Score], person: int, beat: Stretch, last: Array
     number = beat.window.beat
     up = replace(scores[number], figures={}, changes={"ab"[person]: (Change(posture="stands"),)})
     score = [*scores[:number], up, *scores[number + 1 :]]
-    found = postures(score, number, person, beat.start, beat.stop, beat.stand, last)
-    return [pose for pose in found if pose[0] < beat.start + min(RISING, beat.frames)]
+    poses = postures(score, number, person, beat.start, beat.stop, beat.stand, last)
+    return [pose for pose in poses if pose[0] < beat.start + min(RISING, beat.frames)]

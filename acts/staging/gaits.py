@@ -233,13 +233,13 @@ def _ankle(steps: Gait, toe: Array, sign: float, headings: Array) -> Array:
 
 def _height(steps: Gait, poses: Array, places: Array, ankles: list[Array]) -> Array:
     """(N,) metres of the pelvis from which both feet are within reach."""
-    found = []
+    heights = []
     for (hip, *_), ankle in zip(LEGS, ankles, strict=True):
         offset = poses[:, hip]
         apart = np.linalg.norm(ankle[:, [0, 2]] - places - offset[:, [0, 2]], axis=1)
         reach = np.sqrt(np.maximum((_REACH * _LEG) ** 2 - apart**2, 0.01))
-        found.append(ankle[:, 1] + reach - offset[:, 1])
-    lowest = scipy.ndimage.minimum_filter1d(np.minimum(*found), 5)
+        heights.append(ankle[:, 1] + reach - offset[:, 1])
+    lowest = scipy.ndimage.minimum_filter1d(np.minimum(*heights), 5)
     return np.asarray(scipy.ndimage.gaussian_filter1d(lowest, _EVEN, mode="nearest") - steps.sinks)
 
 

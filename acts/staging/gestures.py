@@ -343,15 +343,15 @@ def hand_parts(
         before: (2, 22, 3) the people before the beat; None where it is the first.
         seed: draws how late each of them is.
     """
-    found = dict(score.gestures)
+    gestures = dict(score.gestures)
     if _linked(moves):
-        around = {who for who, gesture in found.items() if gesture.gesture == "around"}
+        around = {who for who, gesture in gestures.items() if gesture.gesture == "around"}
         for who, side in _inner(stretch.ways).items():
             if who in around or not around:
-                found[who] = Gesture.model_validate({"gesture": "around" if around else "linked", "sides": side})
+                gestures[who] = Gesture.model_validate({"gesture": "around" if around else "linked", "sides": side})
     ways = {("ab".index(move.person), move.way) for move in moves}
     for person in (0, 1):
-        gesture = found.get("ab"[person])
+        gesture = gestures.get("ab"[person])
         if gesture is None or not (person in stretch.ways or person in posed):
             continue  # the network makes the gesture
         begins = 0 if person in posed and person not in stretch.ways else FIRST

@@ -96,15 +96,15 @@ def softened(parts: Iterable[Part]) -> list[Part]:
 
 def places_of(parts: Sequence[Part]) -> list[Part]:
     """The parts, with only the places of soft poses, the headings of those who are upright, and how low others are."""
-    found: list[Part] = []
+    held: list[Part] = []
     for part in parts:
         if isinstance(part, KnownPath) or not part.soft:
-            found.append(part)
+            held.append(part)
         elif not part.free and (not part.joints or 0 in part.joints):
             frames, poses = np.asarray(part.frames), np.asarray(part.positions)
             low = poses[:, 0, 1] <= UPRIGHT
             if low.any():  # of a body that lies, hips and shoulders say nothing
-                found.append(KnownFrames(part.person, frames[low].tolist(), poses[low], (JOINT["pelvis"],)))
+                held.append(KnownFrames(part.person, frames[low].tolist(), poses[low], (JOINT["pelvis"],)))
             if low.all():
                 continue
             frames, poses, kept = frames[~low], poses[~low], [0]
@@ -114,8 +114,8 @@ def places_of(parts: Sequence[Part]) -> list[Part]:
             poses = poses[kept]
             headings = None if low.any() else _headings(part.joints, poses)
             places = poses[:, 0][:, [0, 2]]
-            found.append(KnownPath(part.person, frames[kept].tolist(), places, headings, headings is not None))
-    return found
+            held.append(KnownPath(part.person, frames[kept].tolist(), places, headings, headings is not None))
+    return held
 
 
 def _headings(joints: Collection[int], poses: Array) -> Array | None:

@@ -190,12 +190,12 @@ def pull_parts(puller: str, poses: Sequence[Pose], stretch: Stretch, *, both: bo
 
 def _leaning_to(pose: Array, place: Array, angle: float) -> Array:
     """The pose (22, 3) of a person at a place (2,) who leans forward as far as to reach the hand of another pose."""
-    found = bending(place, angle, float(_LEANS[0]))
+    leaning = bending(place, angle, float(_LEANS[0]))
     for lean in _LEANS[1:]:
-        if _gap(found, pose) <= 2 * _ARM:
+        if _gap(leaning, pose) <= 2 * _ARM:
             break
-        found = bending(place, angle, float(lean))
-    return found
+        leaning = bending(place, angle, float(lean))
+    return leaning
 
 
 def _gap(one: Array, other: Array) -> float:

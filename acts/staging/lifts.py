@@ -206,7 +206,7 @@ class Carrying:
 
     def before(self) -> dict[int, Way2D]:
         """The ways until shortly before the feet leave the floor; from then on, poses say where people are."""
-        found, until = {}, self.off[0] - RISES // 2
+        ways, until = {}, self.off[0] - RISES // 2
         for person, way in self.stretch.ways.items():
             kept = np.asarray(way.frames) < (until if person != self.carrier else self.off[0])
             if person != self.carrier and self._waits:
@@ -216,8 +216,8 @@ class Carrying:
                 frames = np.asarray(way.frames)[kept].tolist()
                 if person == self.carrier and headings is not None:
                     headings = np.where(np.isfinite(headings), self.course.headings[frames], headings)
-                found[person] = replace(way, frames=frames, places=way.places[kept], headings=headings)
-        return found
+                ways[person] = replace(way, frames=frames, places=way.places[kept], headings=headings)
+        return ways
 
     def parts(self) -> list[KnownFrames]:
         """The body of the person carried, and the carrier's pelvis, trunk and hands."""
@@ -259,13 +259,13 @@ class Carrying:
         steps = Steps(stride)
         speed = np.insert(np.gradient(course.places, axis=0), 1, 0.0, axis=1)
         turned = np.gradient(course.headings)
-        found = []
+        poses = []
         for t in range(*self.off):
             pose = upright(course.places[t], float(course.headings[t]))
             pose -= (pose[0] - [*course.places[t][:1], 0.0, *course.places[t][1:]]) * [1.0, 0.0, 1.0]
             moving = bool(np.linalg.norm(speed[t]) > _STANDS or abs(turned[t]) > _STANDS)
-            found.append(steps(pose, moving=moving, ahead=stride / 2 * speed[t]))
-        return np.stack(found)
+            poses.append(steps(pose, moving=moving, ahead=stride / 2 * speed[t]))
+        return np.stack(poses)
 
     def _on_feet(self) -> Iterator[tuple[int, Array]]:
         """Frames before and after the lift, and poses (22, 3) of the person carried then."""

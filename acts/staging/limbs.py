@@ -102,12 +102,12 @@ def _pulses(since: Array, held: Array, times: int, period: float = 1.0) -> Array
 
 
 def _leg(limb: Limb, hip: Array, knee: Array, out: Array | float = 0.0) -> Turns:
-    found: Turns = {}
+    turns: Turns = {}
     for side in _legs(limb):
         sign = 1.0 if side == "left" else -1.0
-        found[f"{side}_hip"] = about(2, sign * np.asarray(out) + np.zeros_like(hip)) @ about(0, -hip)
-        found[f"{side}_knee"] = about(0, knee)
-    return found
+        turns[f"{side}_hip"] = about(2, sign * np.asarray(out) + np.zeros_like(hip)) @ about(0, -hip)
+        turns[f"{side}_knee"] = about(0, knee)
+    return turns
 
 
 def _raised_leg(limb: Limb, held: Array, since: Array) -> Turns:
@@ -251,11 +251,11 @@ def _shrugging(limb: Limb, held: Array, since: Array) -> Turns:
 def _marching(limb: Limb, held: Array, since: Array) -> Turns:
     """One knee after the other."""
     swing = _swing(since, held, limb.times, 1.1)
-    found: Turns = {}
+    turns: Turns = {}
     for side, sign in (("left", 1.0), ("right", -1.0)):
         up = np.maximum(sign * swing, 0.0)
-        found |= {f"{side}_hip": about(0, -1.0 * up), f"{side}_knee": about(0, 1.4 * up)}
-    return found
+        turns |= {f"{side}_hip": about(0, -1.0 * up), f"{side}_knee": about(0, 1.4 * up)}
+    return turns
 
 
 MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
@@ -327,7 +327,7 @@ def _with_head(body: Array, poses: Array, angle: float) -> Array:
     neck, head = JOINT["neck"], JOINT["head"]
     ways = (poses[:, [neck, head]] - poses[:, [0, neck]]).swapaxes(1, 2)
     trunk, over = np.moveaxis(heading_matrix(heading(body) - angle) @ ways, -1, 0)
-    found = body.copy()
+    moved = body.copy()
     leans = swing(trunk, body[:, neck] - body[:, 0])
-    found[:, head] = body[:, neck] + np.einsum("nij,nj->ni", leans, over)
-    return found
+    moved[:, head] = body[:, neck] + np.einsum("nij,nj->ni", leans, over)
+    return moved

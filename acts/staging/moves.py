@@ -29,13 +29,13 @@ _WAITS = ("stay", "averted", "face", "turn")
 
 def fastest(moves: Sequence[Move]) -> list[Move]:
     """The moves, each once: who walks away and runs away at once, runs; who walks ahead of another passes nobody."""
-    found: dict[tuple[str, Way, bool], Move] = {}
+    by_way: dict[tuple[str, Way, bool], Move] = {}
     for move in moves:
         key = move.person, move.way, move.late
-        if key not in found or move.speed > found[key].speed:
-            found[key] = move
-    ahead = {move.person for move in found.values() if move.way == "ahead"}
-    return [move for move in found.values() if move.way != "past" or move.person not in ahead]
+        if key not in by_way or move.speed > by_way[key].speed:
+            by_way[key] = move
+    ahead = {move.person for move in by_way.values() if move.way == "ahead"}
+    return [move for move in by_way.values() if move.way != "past" or move.person not in ahead]
 
 
 def held_moves(hold: str) -> tuple[Move, ...]:
@@ -120,17 +120,17 @@ def told_still(alone: tuple[str, str], idle: Collection[str]) -> tuple[str, str]
 
 
 def meeting(
-    touch: Touch | None, found: Sequence[Move], posed: Mapping[int, Array], stand: Standing
+    touch: Touch | None, walked: Sequence[Move], posed: Mapping[int, Array], stand: Standing
 ) -> tuple[Touch | None, tuple[Move, ...]]:
     """The contact, if it can be planned, and the moves of the beat with those that it needs.
 
     Args:
         touch: as the words name it.
-        found: the beat's moves.
+        walked: the beat's moves.
         posed: a pose (22, 3) of those whose posture is given, by person.
         stand: where the people are when the beat begins.
     """
-    moves = tuple(found)
+    moves = tuple(walked)
     if touch is None:
         return None, moves
     giver = "ab".index(touch.person)
@@ -175,11 +175,11 @@ def coming(score: Score, stand: Standing, down: Collection[int]) -> tuple[Move, 
         stand: where the people are when it begins.
         down: those who are not on their feet.
     """
-    found = score.moves
-    if found or score.touch or score.has_places or score.strike or not score.reaching:
-        return found
+    moves = score.moves
+    if moves or score.touch or score.has_places or score.strike or not score.reaching:
+        return moves
     if stand.gap() < min(score.reaching.values()) + FAR_BEYOND:
-        return found
+        return moves
     comes = sorted(who for who in score.reaching if "ab".index(who) not in down)
     turned = [
         who

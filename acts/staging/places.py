@@ -209,11 +209,11 @@ class Track:
 
     def _turned_into(self, facing: Array) -> Array:
         """Headings that begin at the person's own and are turned at a body's pace."""
-        found, now, most = np.empty(len(facing)), self.heading, math.pi / TURNING / FPS
+        headings, now, most = np.empty(len(facing)), self.heading, math.pi / TURNING / FPS
         for i, wanted in enumerate(facing):
             now += float(np.clip(wrapped(wanted - now), -most, most))
-            found[i] = now
-        return found
+            headings[i] = now
+        return headings
 
     def turn(self, angle: float) -> None:
         """Turns on the spot by so many radians."""
@@ -270,11 +270,11 @@ def sampled(who: int, track: Track, *, first: bool) -> Way2D | None:
 
 def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:
     """The frames, with more of them where somebody turns: a network that is free there turns them within a few."""
-    found = list(frames)
+    keys = list(frames)
     for first, last in itertools.pairwise([0, *frames]):
         turned = abs(headings[last] - headings[first])
         if turned > STEP:  # false where either heading is free
             gone = np.abs(headings[first : last + 1] - headings[first])
             each = turned / math.ceil(turned / STEP)
-            found += [first + int(np.argmax(gone >= share)) for share in np.arange(each, turned - 0.01, each)]
-    return sorted(set(found))
+            keys += [first + int(np.argmax(gone >= share)) for share in np.arange(each, turned - 0.01, each)]
+    return sorted(set(keys))

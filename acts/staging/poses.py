@@ -149,13 +149,13 @@ def lying(place: Array, angle: float) -> Array:
 
 def at_rest(poses: Array) -> Array:
     """Poses (N, 22, 3) of a person lying on the back, with the right hand on the belly."""
-    found = np.array(poses)
+    rested = np.array(poses)
     arm = [JOINT[f"right_{joint}"] for joint in ("shoulder", "elbow", "wrist")]
-    turns = np.swapaxes(about(1, heading(found)), -1, -2)
+    turns = np.swapaxes(about(1, heading(rested)), -1, -2)
     goal, pole = (np.asarray(way) @ turns for way in (_BELLY, _ELBOW_LIES))
-    shoulder, elbow, wrist = (found[:, joint] for joint in arm)
-    found[:, arm[1]], found[:, arm[2]] = bent_towards(shoulder, elbow, wrist, found[:, 0] + goal, pole)
-    return found
+    shoulder, elbow, wrist = (rested[:, joint] for joint in arm)
+    rested[:, arm[1]], rested[:, arm[2]] = bent_towards(shoulder, elbow, wrist, rested[:, 0] + goal, pole)
+    return rested
 
 
 def _reclining(place: Array, angle: float, share: float) -> Array:
@@ -225,12 +225,12 @@ def bowed(poses: Array, angle: float, seconds: Array, length: float, times: int 
     phase = np.where((since >= 0) & (since < times * each), since % each, 0.0) / each
     down, up = minimum_jerk(phase / _BOW_DOWN), minimum_jerk((phase - _BOW_UP) / (1 - _BOW_UP))
     poses, bend = np.asarray(poses, dtype=float), lean * (down - up)
-    found = leaning(poses, angle, bend)
+    bent = leaning(poses, angle, bend)
     for side, share in _WITH_TRUNK.items():
         shoulder, *arm = (JOINT[f"{side}_{name}"] for name in ("shoulder", "elbow", "wrist"))
         hangs = poses[:, arm] - poses[:, [shoulder]]
-        found[:, arm] = found[:, [shoulder]] + hangs @ _tilt(angle, share * bend)
-    return found
+        bent[:, arm] = bent[:, [shoulder]] + hangs @ _tilt(angle, share * bend)
+    return bent
 
 
 def _pose_of(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:
@@ -288,14 +288,14 @@ _FILE = Path(__file__).parents[1] / "recordings" / "idle.npz"
 @cache
 def recordings() -> tuple[Array, ...]:
     """The recordings, (T, 22, 3) metres each at :data:`RATE`, around the origin and facing +Z in the mean."""
-    found = []
+    clips = []
     with np.load(_FILE, allow_pickle=False) as kept:
         for name in sorted(kept.files):
             poses = kept[name] / 1000.0
             facing = heading(poses)
             mean = float(np.arctan2(np.sin(facing).mean(), np.cos(facing).mean()))
-            found.append((poses - poses[:, :1].mean(0) * [1.0, 0.0, 1.0]) @ heading_matrix(-mean).T)
-    return tuple(found)
+            clips.append((poses - poses[:, :1].mean(0) * [1.0, 0.0, 1.0]) @ heading_matrix(-mean).T)
+    return tuple(clips)
 
 
 def standing_by(place: Array, angle: float | Array, frames: Frames, seed: int) -> Array:

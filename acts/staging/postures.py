@@ -118,7 +118,7 @@ def postures(
     if last is None and now == "lies":  # across the other's way, and not with the feet towards them
         angle += math.pi / 2
         place = place + LYING * np.array([math.sin(angle), math.cos(angle)])
-    found: dict[int, Array] = {}
+    poses: dict[int, Array] = {}
     begins = start + 1 if last is not None else start
     pose = _MAKES[now](place, angle) if last is None or now == "stands" else last
     for change in own:
@@ -126,23 +126,23 @@ def postures(
         if last is None and now != "stands":
             at = max(at, start + round(FPS))  # they are seen as they were
         if now != "stands" or (last is None and begins == start):
-            found |= _stays(pose, begins, at + 1)
+            poses |= _stays(pose, begins, at + 1)
         if change.passing:
             middle = min(at + DUCKING + (stop - at) // 4, stop - DUCKING)
-            found |= {middle: _MAKES[change.posture](place, angle), middle + DUCKING: upright(place, angle)}
+            poses |= {middle: _MAKES[change.posture](place, angle), middle + DUCKING: upright(place, angle)}
             begins = middle + DUCKING
             continue
         ends, on_the_way = _on_the_way(now, change, at, stop, place, angle)
-        found |= on_the_way
+        poses |= on_the_way
         now, pose, begins = change.posture, _MAKES[change.posture](place, angle), ends
     if own and now == "stands":
-        found |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop))
+        poses |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop))
     elif now != "stands":
-        found |= _stays(pose, begins, stop)
+        poses |= _stays(pose, begins, stop)
     if now == "stands":
-        found |= dict(_jumping(jumps, start, stop, place, angle)) if jumps else {}
-        found |= dict(_bowing(bows, start, stop, place, angle)) if bows else {}
-    return [(frame, found[frame]) for frame in sorted(found) if start <= frame < stop]
+        poses |= dict(_jumping(jumps, start, stop, place, angle)) if jumps else {}
+        poses |= dict(_bowing(bows, start, stop, place, angle)) if bows else {}
+    return [(frame, poses[frame]) for frame in sorted(poses) if start <= frame < stop]
 
 
 def _on_the_way(

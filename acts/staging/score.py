@@ -272,11 +272,11 @@ def at_start(scores: Sequence[Score], beat: int) -> dict[str, str]:
 
 def _from_the_start(scores: Sequence[Score]) -> dict[str, str]:
     """The postures of people of whom a later beat first says that they are down already."""
-    found: dict[str, str] = {}
+    states: dict[str, str] = {}
     known: set[str] = set()
     for score in scores:
         for person, listed in score.changes.items():
             if person not in known and listed[0].already:
-                found[person] = listed[0].posture
+                states[person] = listed[0].posture
         known |= set(score.changes) | score.going
-    return found
+    return states

@@ -223,15 +223,15 @@ def _rests(struck: Strike, after: Mapping[int, int], courses: Sequence[Course], 
     """
     if struck.goes_on:
         return []
-    found = []
+    parts = []
     for person in {"ab".index(who) for who in struck.turns} & after.keys():
         frames = stretch.shown(np.arange(after[person] + RESTS, stretch.frames, EVERY))
         course = courses[person]
         poses = [upright(course.places[frame], float(course.headings[frame])) for frame in frames]
         if poses:
             still = np.stack(poses)
-            found.append(stretch.known(person, frames, still - still[:, :1], [*TRUNK, *HANDS]))
-    return found
+            parts.append(stretch.known(person, frames, still - still[:, :1], [*TRUNK, *HANDS]))
+    return parts
 
 
 def _is_single(struck: Strike) -> bool:

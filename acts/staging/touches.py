@@ -156,11 +156,11 @@ def touched(touch: Touch, other: Array, own: Array) -> Array:
         joints = _joints("shoulder")  # as far as an arm gets round somebody from the front
     if not touch.sides:
         return other[joints[0]] + _KISS * unit(own[JOINT["head"]] - other[joints[0]])[None]
-    found = []
+    poses = []
     for side in touch.sides:
         shoulder = own[JOINT[f"{side}_shoulder"]]
         if touch.beside:
-            found.append(_around(other, shoulder))
+            poses.append(_around(other, shoulder))
             continue
         joint = min(joints, key=lambda j: float(np.linalg.norm(other[j] - shoulder)))
         place = other[joint] + _SKIN * unit(shoulder - other[joint])
@@ -171,8 +171,8 @@ def touched(touch: Touch, other: Array, own: Array) -> Array:
             place = place + 0.08 * unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
         if touch.part == "back" and len(joints) == 1:
             place = place + _PALM * unit(shoulder - back)
-        found.append(place)
-    return np.stack(found)
+        poses.append(place)
+    return np.stack(poses)
 
 
 def inner_side(other: Array, place: Array, angle: float) -> str:
@@ -195,17 +195,17 @@ def _tilted(other: Array, own: Array, angle: float, *, whispers: bool = False) -
     """
     side = inner_side(other, own[0][[0, 2]], angle)
     sign = -1.0 if side == SIDES[0] else 1.0
-    found = own.copy()
+    tilted = own.copy()
     neck, head = JOINT["neck"], JOINT["head"]
     for root, moved, tilt in zip((0, neck), (list(TRUNK), [head]), _WHISPERS if whispers else _RESTS, strict=True):
         turn = heading_matrix(angle) @ about(2, sign * tilt) @ heading_matrix(-angle)
-        found[moved] = found[root] + (found[moved] - found[root]) @ turn.T
+        tilted[moved] = tilted[root] + (tilted[moved] - tilted[root]) @ turn.T
     inner = SIDES.index(side)
     hands = [(inner, 0, _OWN_HAND), *([(1 - inner, head, _AT_MOUTH)] if whispers else [])]
     for hand, root, at in hands:
         place = heading_matrix(angle) @ (at * [-sign, 1.0, 1.0])
-        found[JOINT[f"{SIDES[hand]}_wrist"]] = found[root] + place
-    return found
+        tilted[JOINT[f"{SIDES[hand]}_wrist"]] = tilted[root] + place
+    return tilted
 
 
 def _around(other: Array, shoulder: Array) -> Array:
@@ -294,13 +294,13 @@ def _moments(touch: Touch, first: int, last: int) -> list[tuple[int, float]]:
     if not touch.times:
         stop = min(last, max(first + round(HELD * FPS), round(0.85 * last)))
         return [(frame, 0.0) for frame in range(first, stop, 3)]
-    found: list[tuple[int, float]] = []
+    moments: list[tuple[int, float]] = []
     for i in range(touch.times):
         on = first + i * BEAT
-        found += [(frame, 0.0) for frame in range(on, on + 7, 3)]
+        moments += [(frame, 0.0) for frame in range(on, on + 7, 3)]
         if i + 1 < touch.times:
-            found.append((on + BEAT // 2 + 3, TAKEN_BACK))
-    return [(frame, back) for frame, back in found if frame < last]
+            moments.append((on + BEAT // 2 + 3, TAKEN_BACK))
+    return [(frame, back) for frame, back in moments if frame < last]
 
 
 def _rests(touch: Touch, at: Sequence[tuple[int, float]], frames: int) -> range:

@@ -69,9 +69,9 @@ def run_motion(*, steps: int = 8, seeds: int = 2) -> dict[str, Any]:
         people[kind] = ([], [])
         for asked in sentences:
             for seed in range(seeds):
-                for found, planned in zip(people[kind], (True, False), strict=True):
-                    found += _measured(_made(engine, asked, steps, seed, planned), asked.people)
-    figures = {kind: _figures(found, real.get(kind, {})) for kind, found in people.items()}
+                for measured, planned in zip(people[kind], (True, False), strict=True):
+                    measured += _measured(_made(engine, asked, steps, seed, planned), asked.people)
+    figures = {kind: _figures(measured, real.get(kind, {})) for kind, measured in people.items()}
     everyone = [[each for pair in people.values() for each in pair[column]] for column in (0, 1)]
     figures["all"] = _figures(everyone, real.get("all", {}))
     print(table(figures))
@@ -93,7 +93,7 @@ def _measured(duet: Duet, people: str = "ab") -> list[Naturalness]:
 def _figures(columns: Sequence[Sequence[Naturalness]], real: Mapping[str, float]) -> dict[str, dict[str, float]]:
     return {
         measure: {
-            **{name: _median(measure, found) for name, found in zip(COLUMNS, columns, strict=False)},
+            **{name: _median(measure, measured) for name, measured in zip(COLUMNS, columns, strict=False)},
             COLUMNS[2]: real.get(measure, math.nan),
         }
         for measure in MEASURES

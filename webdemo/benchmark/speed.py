@@ -91,7 +91,7 @@ def measure_requests(engine: Any, request: GenerateRequest, repeats: int) -> dic
 
 def measure_classes(engine: Any, request: GenerateRequest, repeats: int) -> dict[str, float]:
     """Seconds of a class, and over those of a sentence of the same length and steps, run in turn."""
-    by_class = next(found.name for found in methods("generate") if "class" in found.takes)
+    by_class = next(each.name for each in methods("generate") if "class" in each.takes)
     classed = replace(request, prompt="shake hands", model=by_class)
     jobs = [partial(lambda asked: list(engine.run(asked)), asked) for asked in (classed, request)]
     jobs[0]()  # the first run prepares what later ones use
@@ -111,9 +111,9 @@ def measure_prediction(engine: Any, repeats: int) -> dict[str, float]:
         list(engine.run(PredictRequest(motion=past, seconds=25 / FPS, seed=next(seeds), model=model)))
 
     figures = {}
-    for found in (m for m in methods("predict") if m.weights):
-        predict(found.name)
-        figures[f"predict_ms_{found.name}"] = 1000 * statistics.median(timed(partial(predict, found.name), repeats))
+    for each in (m for m in methods("predict") if m.weights):
+        predict(each.name)
+        figures[f"predict_ms_{each.name}"] = 1000 * statistics.median(timed(partial(predict, each.name), repeats))
     return figures
 
 

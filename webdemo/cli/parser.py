@@ -24,7 +24,7 @@ class Parser(argparse.ArgumentParser):
 
 def names_of(task: Task) -> str:
     """The names of the methods of a task, for a help text."""
-    names = [found.name for found in methods(task)]
+    names = [each.name for each in methods(task)]
     return " or ".join([AUTOMATIC, *names] if task == "react" else names)
 
 
@@ -101,7 +101,7 @@ def add_sampling(parser: argparse.ArgumentParser, task: Task) -> None:
 def sampling_fields(options: argparse.Namespace) -> dict[str, Any]:
     """The fields of a request, from the options of :func:`add_sampling`."""
     names = ("seed", "samples", "guidance", "steps", "damping", "sampler", "model")
-    found = {name: getattr(options, name) for name in names} | {"cleanup": not options.no_cleanup}
+    fields = {name: getattr(options, name) for name in names} | {"cleanup": not options.no_cleanup}
     if options.guidance is None:
-        found["guidance"] = method(options.model).default("guidance", SamplingRequest.guidance)
-    return found
+        fields["guidance"] = method(options.model).default("guidance", SamplingRequest.guidance)
+    return fields

@@ -67,10 +67,10 @@ def _motion(path: Path, choices: ImportChoices) -> Duet:
     from motion.formats import read
     from motion.retarget import to_smpl
 
-    found = read(path, longest=MOST_SECONDS, choices=choices)
-    if not isinstance(found, Duet):
+    motion = read(path, longest=MOST_SECONDS, choices=choices)
+    if not isinstance(motion, Duet):
         raise InputError(f"{path.name} holds one person: a scene goes on from a motion of two.")
-    return to_smpl(found)
+    return to_smpl(motion)
 
 
 # ---- reading -------------------------------------------------------------------------------------

@@ -52,22 +52,22 @@ class Scoring:
 
     def request(self, sentence: Sentence, seed: int, actor: Duet | None) -> GenerateRequest | ReactRequest:
         """The request for both people, or for the partner of an actor."""
-        found = method(self.model)
+        chosen = method(self.model)
         fields: dict[str, Any] = asdict(self) | {"seed": seed}
         plain, _, strictness = (fields.pop(name) for name in ("plain", "zeros", "strictness"))
         if actor is None:
-            shortest, longest = found.seconds
+            shortest, longest = chosen.seconds
             seconds = min(max(sentence.seconds, shortest), longest)
             fields |= {"split": not plain, "planned": not plain, "strictness": strictness}
             return GenerateRequest(prompt=sentence.words, seconds=seconds, **fields)
-        sampler = SamplingRequest.sampler if "ddim" in found.samplers else found.samplers[0]
-        heard = sentence.words if "words" in found.takes else ""
+        sampler = SamplingRequest.sampler if "ddim" in chosen.samplers else chosen.samplers[0]
+        heard = sentence.words if "words" in chosen.takes else ""
         return ReactRequest(actor=actor.a, prompt=heard, sampler=sampler, **fields)
 
 
 def add_score(commands: Any) -> None:
     """Adds ``score`` to the shell's commands."""
-    names = dict.fromkeys(found.name for task in ("generate", "react") for found in methods(task))
+    names = dict.fromkeys(each.name for task in ("generate", "react") for each in methods(task))
     parser = commands.add_parser("score", help="judge a model on sentences that no training has seen")
     parser.add_argument("--model", default=SamplingRequest.model, help=" or ".join(names))
     parser.add_argument(
@@ -94,11 +94,11 @@ def add_score(commands: Any) -> None:
 
 def score_model(options: argparse.Namespace) -> dict[str, Any]:
     """Makes the motions that are missing, judges all of them and prints a table."""
-    found = method(options.model)
+    scored = method(options.model)
     scoring = Scoring(
-        found.name,
-        found.steps if options.steps is None else options.steps,
-        found.default("guidance", SamplingRequest.guidance) if options.guidance is None else options.guidance,
+        scored.name,
+        scored.steps if options.steps is None else options.steps,
+        scored.default("guidance", SamplingRequest.guidance) if options.guidance is None else options.guidance,
         options.damping,
         options.plain,
         options.zeros,
@@ -107,14 +107,14 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
     sentences = _chosen(options)
     if not SEEDS[0] <= options.seeds <= SEEDS[1]:
         raise InputError(f"--seeds must be from {SEEDS[0]} to {SEEDS[1]}, not {options.seeds}.")
-    _check(found)
+    _check(scored)
     from motion.metrics.sentences.catalogue import ALL, score, table
     from webdemo.inference.engine import Engine
 
     engine = Engine()
-    digest = engine.pipeline(found.name).digest
+    digest = engine.pipeline(scored.name).digest
     if options.zeros:
-        silence(engine.pipeline(found.name))
+        silence(engine.pipeline(scored.name))
     kept = _folder(options.motions, scoring, digest)
     duets = [[_motion(engine, scoring, s, seed, kept) for seed in range(options.seeds)] for s in sentences]
     print(file=sys.stderr)
@@ -126,7 +126,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         scores["physical"] = physical([duet for drawn in duets for duet in drawn])
     weights = digest[:12] or "none"
     scores["about"] = (
-        f"{found.label}: {len(sentences)} sentences, {len(ruled)} of them with a rule, seeds 0 to "
+        f"{scored.label}: {len(sentences)} sentences, {len(ruled)} of them with a rule, seeds 0 to "
         f"{options.seeds - 1}; {scoring.steps} steps, guidance {scoring.guidance:g}, "
         f"damping {scoring.damping:g}, weights {weights}"
         f"{'; sentences neither split nor planned' if scoring.plain else ''}"
@@ -138,7 +138,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         write_text(options.out, json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
     passed, count = scores["tags"][ALL]
     return {
-        "model": found.name,
+        "model": scored.name,
         "sentences": len(sentences),
         "motions": sum(map(len, duets)),
         "passed": passed,
@@ -176,12 +176,12 @@ def _chosen(options: argparse.Namespace) -> Sequence[Sentence]:
     return kept
 
 
-def _check(found: Method) -> None:
+def _check(chosen: Method) -> None:
     """Raises InputError for a method that sentences cannot be asked of."""
-    if "class" in found.takes:
-        raise InputError(f"{found.label} takes the name of a class, not a sentence: choose another model.")
-    if not {"generate", "react"} & set(found.tasks):
-        raise InputError(f"{found.label} predicts and takes no sentence: choose a model that generates or reacts.")
+    if "class" in chosen.takes:
+        raise InputError(f"{chosen.label} takes the name of a class, not a sentence: choose another model.")
+    if not {"generate", "react"} & set(chosen.tasks):
+        raise InputError(f"{chosen.label} predicts and takes no sentence: choose a model that generates or reacts.")
 
 
 def _folder(folder: Path | None, scoring: Scoring, digest: str) -> Motions | None:
@@ -198,8 +198,8 @@ def _motion(engine: Any, scoring: Scoring, sentence: Sentence, seed: int, kept: 
     if kept is not None and kept.path(sentence, seed).is_file():
         return kept.read(sentence, seed)
     began = time.perf_counter()
-    found, actor = method(scoring.model), None
-    if "generate" not in found.tasks:  # the actor is person a of the default model's motion of the sentence
+    chosen, actor = method(scoring.model), None
+    if "generate" not in chosen.tasks:  # the actor is person a of the default model's motion of the sentence
         default = Scoring(
             SamplingRequest.model, method(SamplingRequest.model).steps, SamplingRequest.guidance, scoring.damping
         )

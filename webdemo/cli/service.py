@@ -54,16 +54,16 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
 
     engine, known = Engine(), lexicon()
     card = {name: value for name, value in engine.info().items() if name != "ready"}  # nothing is loaded here
-    found = {
+    facts = {
         "model": card,
         "methods": {
-            found.name: {
-                "label": found.label,
-                "tasks": found.tasks,
-                "takes": sorted(found.takes),
-                "summary": found.summary,
+            facts.name: {
+                "label": facts.label,
+                "tasks": facts.tasks,
+                "takes": sorted(facts.takes),
+                "summary": facts.summary,
             }
-            for found in methods()
+            for facts in methods()
         },
         "failed": failed(),
         "acts": {"all": len(known.entries), "own": sorted(known.own)},
@@ -72,7 +72,7 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
         "versions": {name: version(name) for name in ("gradio", "torch", "numpy", "plotly", "diffusers")},
     }
     print(f"{card['name']}: {card.get('summary', '')}")
-    return found
+    return facts
 
 
 def benchmark(options: argparse.Namespace) -> dict[str, Any]:

@@ -77,12 +77,12 @@ class Accounts:
 
     def arrive(self, name: str) -> Account:
         """The account of a person who signs in elsewhere, made when they first come."""
-        if (found := self.of(name)) is None:
+        if (account := self.of(name)) is None:
             values = {"name": name, "key": f"{name}#{secrets.token_hex(4)}"}
             with self.database.session.begin() as session:
                 session.execute(insert(Account).values(**values).on_conflict_do_nothing())
-                found = session.get_one(Account, name)
-        return found
+                account = session.get_one(Account, name)
+        return account
 
     def begin(self, name: str, password: str, address: str, known: str = "") -> str | None:
         """A new sign-in's token, or None if name and password do not match.

@@ -53,8 +53,8 @@ class Administration:
             for table in (Run, Study)
         ]
         with self.database.session() as session:
-            found = session.execute(select(Account, count, sizes[0] + sizes[1]).order_by(Account.name))
-            return [Row(a.name, a.role, a.suspended, runs, size / 2**20) for a, runs, size in found]
+            rows_ = session.execute(select(Account, count, sizes[0] + sizes[1]).order_by(Account.name))
+            return [Row(a.name, a.role, a.suspended, runs, size / 2**20) for a, runs, size in rows_]
 
     def set_role(self, name: str, *, admin: bool) -> None:
         """Makes a person an administrator, or no longer."""
@@ -93,7 +93,7 @@ class Administration:
 
 def _known(session: Session, name: str) -> Account:
     """An account; raises InputError if there is none of this name."""
-    found = session.get(Account, name)
-    if found is None:
+    account = session.get(Account, name)
+    if account is None:
         raise InputError(f"There is no account {name!r:.60}: see `admin list`.")
-    return found
+    return account

@@ -89,4 +89,4 @@ def _page(root: str, key: str, question: str) -> str:
         "here": f"{root}/study/{quote(key, safe='')}",
         "question": html.escape(question),
     }
-    return re.sub(r"@(\w+)@", lambda found: parts[found[1]], template)
+    return re.sub(r"@(\w+)@", lambda match: parts[match[1]], template)

@@ -205,12 +205,12 @@ class Database:
     def _make_tables(self) -> None:
         with self.engine.connect() as connection:
             connection.exec_driver_sql("BEGIN IMMEDIATE")  # another process may open it as well
-            found = connection.exec_driver_sql("PRAGMA user_version").scalar()
-            if found == SCHEMA:
+            schema = connection.exec_driver_sql("PRAGMA user_version").scalar()
+            if schema == SCHEMA:
                 return
             if inspect(connection).get_table_names():
                 raise InputError(
-                    f"{self.engine.url.database} was made by another version of Pas de Deux (schema {found}; this one "
+                    f"{self.engine.url.database} was made by another version of Pas de Deux (schema {schema}; this one "
                     f"knows {SCHEMA}): move its folder away to begin anew, or install that version."
                 )
             Table.metadata.create_all(connection)
@@ -223,9 +223,9 @@ class Database:
             for table in Table.metadata.sorted_tables:
                 connection.execute(select(table).limit(1)).first()
             if time.monotonic() > self._sound_until:
-                (found,) = connection.exec_driver_sql("PRAGMA quick_check(1)").one()
-                if found != "ok":
-                    raise DatabaseError("PRAGMA quick_check", None, ValueError(found))
+                (answer,) = connection.exec_driver_sql("PRAGMA quick_check(1)").one()
+                if answer != "ok":
+                    raise DatabaseError("PRAGMA quick_check", None, ValueError(answer))
                 self._sound_until = time.monotonic() + SOUND_SECONDS
 
     def close(self) -> None:
@@ -300,10 +300,10 @@ def _engine_of(file: Path) -> Engine:
 def fields_of(text: str) -> dict[str, Any]:
     """A column's JSON; empty if it is damaged."""
     try:
-        found = json.loads(text or "{}")
+        fields = json.loads(text or "{}")
     except ValueError:
         return {}
-    return found if isinstance(found, dict) else {}
+    return fields if isinstance(fields, dict) else {}
 
 
 def entry_of(run: Run) -> Entry:

@@ -235,10 +235,10 @@ class History:
     # ---- files -----------------------------------------------------------------------------------
 
     def _own(self, session: Session, run: str, owner: str) -> Run:
-        found = session.get(Run, run) if _KEY.match(run) else None
-        if found is None or not owner or found.owner != owner or found.removed is not None:
+        row = session.get(Run, run) if _KEY.match(run) else None
+        if row is None or not owner or row.owner != owner or row.removed is not None:
             raise InputError("There is no such run in your history: reload the page.")
-        return found
+        return row
 
     def _write(self, run: str, result: Result) -> None:
         """Writes a result's files into a folder that takes its name when it is whole."""

@@ -79,8 +79,8 @@ class Notebook(Sharing):
         for other in kept.get("compared", ())[:MOST_BESIDE]:
             with suppress(InputError):  # it was removed meanwhile
                 beside.append(super().open(str(other), run.owner))
-        found = Kept(controls=kept.get("controls", {}), people=tuple(people), compared=tuple(kept.get("compared", ())))
-        return replace(opened, kept=found, beside=tuple(beside))
+        state = Kept(controls=kept.get("controls", {}), people=tuple(people), compared=tuple(kept.get("compared", ())))
+        return replace(opened, kept=state, beside=tuple(beside))
 
     # ---- writing ---------------------------------------------------------------------------------
 
@@ -152,10 +152,10 @@ class Notebook(Sharing):
         now = self.clock()
         with self.database.session.begin() as session:
             for run in runs:
-                found = self._own(session, run, owner)
-                if found.state == "running":
+                row = self._own(session, run, owner)
+                if row.state == "running":
                     raise InputError("A run that goes on cannot be removed: cancel it first.")
-                session.execute(update(Run).where(_with_parts(found.id)).values(removed=now))
+                session.execute(update(Run).where(_with_parts(row.id)).values(removed=now))
         audit("runs-removed", runs=" ".join(runs), count=len(runs))
         return len(runs)
 
@@ -171,11 +171,11 @@ class Notebook(Sharing):
         """Brings removed runs back that are not deleted yet; returns how many."""
         wanted = (Run.owner == owner, Run.owner != "", Run.id.in_(list(runs)), Run.removed.is_not(None))
         with self.database.session.begin() as session:
-            found = list(session.scalars(select(Run.id).where(*wanted)))
-            for run in found:
+            keys = list(session.scalars(select(Run.id).where(*wanted)))
+            for run in keys:
                 session.execute(update(Run).where(_with_parts(run)).values(removed=None))
-        audit("runs-restored", runs=" ".join(found), count=len(found))
-        return len(found)
+        audit("runs-restored", runs=" ".join(keys), count=len(keys))
+        return len(keys)
 
     # ---- one file --------------------------------------------------------------------------------
 
@@ -196,18 +196,18 @@ class Notebook(Sharing):
         mine = (Run.owner == owner, Run.owner != "", Run.state == "done", Run.removed.is_(None))
         query = select(Run).where(*mine, _with_parts(*runs) if runs else true()).order_by(Run.created)
         with self.database.session() as session:
-            found = [entry_of(run) for run in session.scalars(query)]
-        if not found:
+            entries = [entry_of(run) for run in session.scalars(query)]
+        if not entries:
             raise InputError("None of these runs has a result to export.")
         with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:  # they are packed already
-            for number, entry in enumerate(found, 1):
+            for number, entry in enumerate(entries, 1):
                 motions = sorted((self.folder / entry.id).glob("[0-9]*.npz"))
                 if not motions:
                     raise InputError(f"The files of “{entry.title[:60]}” are gone: remove that run first.")
                 name = re.sub(r"[^\w-]+", "-", entry.title)[:60].strip("-")
                 for path in motions:
                     archive.write(path, f"{number:03d}-{name}-{path.name}")
-        return len(found)
+        return len(entries)
 
     def take_in(self, owner: str, files: Sequence[Path], *, address: str = "") -> int:
         """Adds results to the owner's runs, each from its .npz, which holds its request; returns how many.
@@ -270,16 +270,16 @@ def _with_parts(*runs: str) -> ColumnElement[bool]:
 
 
 def _conditions(wanted: Search) -> list[ColumnElement[bool]]:
-    found: list[ColumnElement[bool]] = []
+    conditions: list[ColumnElement[bool]] = []
     for word in wanted.words.split()[:10]:
         columns = (Run.title, Run.name, Run.note, Run.tags, Run.request)
-        found.append(or_(*(column.icontains(word[:100], autoescape=True) for column in columns)))
+        conditions.append(or_(*(column.icontains(word[:100], autoescape=True) for column in columns)))
     if wanted.kind:
-        found.append(Run.kind == wanted.kind)
+        conditions.append(Run.kind == wanted.kind)
     if wanted.model:
-        found.append(Run.request.contains(f'"model": {json.dumps(wanted.model)}', autoescape=True))
+        conditions.append(Run.request.contains(f'"model": {json.dumps(wanted.model)}', autoescape=True))
     if wanted.tag:
-        found.append(Run.tags.contains(f" {wanted.tag} ", autoescape=True))
+        conditions.append(Run.tags.contains(f" {wanted.tag} ", autoescape=True))
     if wanted.starred:
-        found.append(Run.favourite.is_(True))
-    return found
+        conditions.append(Run.favourite.is_(True))
+    return conditions

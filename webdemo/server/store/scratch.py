@@ -209,5 +209,5 @@ def owns(person: str, path: str) -> bool:
     """True if a path is a file below a person's folder, with all links on its way followed."""
     if "\0" in path or not os.path.isabs(path):
         return False
-    found = Path(os.path.realpath(path))
-    return found.is_file() and found.is_relative_to(os.path.realpath(folder_of(person)))
+    real = Path(os.path.realpath(path))
+    return real.is_file() and real.is_relative_to(os.path.realpath(folder_of(person)))

@@ -51,12 +51,12 @@ class Sharing(History):
         """What shows a run, made where there is nothing; it lasts all its days from now on."""
         now, days = time.time(), self.publish_days if public else LINK_DAYS
         with self.database.session.begin() as session:
-            found = self._own(session, run, owner)
-            if found.state != "done":
-                raise InputError(f"This run has no result to show: it is {found.state}.")
+            row = self._own(session, run, owner)
+            if row.state != "done":
+                raise InputError(f"This run has no result to show: it is {row.state}.")
             there = (Share.run_id == run, Share.public == public, Share.until > now)
             share = session.scalar(select(Share).where(*there)) or Share(key=secrets.token_urlsafe(18), public=public)
-            share.run, share.until = found, now + days * DAY
+            share.run, share.until = row, now + days * DAY
             session.add(share)
         audit("page-published" if public else "link-made", run=run, link=fingerprint(share.key))
         return share
@@ -95,12 +95,12 @@ class Sharing(History):
         """
         stands = (Share.key == key, Share.public, Share.until > time.time(), Run.removed.is_(None))
         with self.database.session() as session:
-            found = session.execute(select(Run, Share.until).join(Share).where(*stands)).first()
-        there = bool(self.publish_days) and found is not None
+            row = session.execute(select(Run, Share.until).join(Share).where(*stands)).first()
+        there = bool(self.publish_days) and row is not None
         audit("page-opened", ok=there, link=fingerprint(key))
-        if found is None or not there:
+        if row is None or not there:
             raise InputError(_ENDED)
-        return self._opened(found[0]), found[1]
+        return self._opened(row[0]), row[1]
 
 
 def _end(session: Session, *where: Any) -> int:

@@ -219,12 +219,12 @@ def _evictable(session: Session, owner: str, spare: Collection[str]) -> list[tup
         .where(Run.owner == owner, Run.owner != "", Run.state != "running")
         .order_by(Run.created, Run.id)
     )
-    found = [
+    runs = [
         (run, size, removed is not None)
         for run, size, favourite, removed in rows
         if run not in spare and (removed is not None or not favourite)
     ]
-    return sorted(found, key=lambda row: not row[2])
+    return sorted(runs, key=lambda row: not row[2])
 
 
 def forget(session: Session, run: str) -> bool:

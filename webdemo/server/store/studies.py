@@ -217,7 +217,7 @@ def _votes(session: Session, row: Study) -> Sequence[Vote]:
 
 def _entry(row: Study, votes: Sequence[Vote]) -> StudyEntry:
     first, second = json.loads(row.runs)
-    found = Counter(vote.answer for vote in votes)
+    answers = Counter(vote.answer for vote in votes)
     entry = StudyEntry(row.id, row.key, row.question, (first, second), len(json.loads(row.captions)))
-    wins, voters = (found[FIRST], found[SECOND]), len({vote.person for vote in votes})
-    return replace(entry, wins=wins, ties=found[TIE], voters=voters)
+    wins, voters = (answers[FIRST], answers[SECOND]), len({vote.person for vote in votes})
+    return replace(entry, wins=wins, ties=answers[TIE], voters=voters)
