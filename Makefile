@@ -22,7 +22,7 @@ test: $(VENV)/.tests
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal --ignore tests/e2e $(call again,--ignore tests/e2e)
-	$(BIN)/python -m pytest tests/e2e $(call again,tests/e2e)
+	$(BIN)/python -m pytest -n 2 --dist worksteal tests/e2e $(call again,tests/e2e)
 	! $(BIN)/python -c 'import ray' 2>/dev/null || $(BIN)/python -m pytest -m ray tests/server/cluster
 
 # Tests of every package that take less than a minute together.
