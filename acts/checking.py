@@ -27,7 +27,7 @@ from .lexicon import Entry, Lexicon, lexicon
 from .plan import ON_TIPTOE, Act, Plan
 from .qualifiers import OTHER_THING, plain, qualifiers
 from .reading.vocabulary import vocabulary
-from .shapes import Lift, is_attitude
+from .shapes import Lift
 
 ONLY = {"tried": "only tried", "offered": "only offered", "pretended": "only pretended", "wished": "only wished"}
 """The reason why an act that is not told cannot be judged, by its modality."""
@@ -204,7 +204,7 @@ def _middle(stretch: tuple[int, int], motion: Motion) -> float:
 
 def _is_attitude(entry: Entry) -> bool:
     """True for an act after which somebody stays as they are: sits, kneels, or is carried."""
-    return any(isinstance(shape, Lift) or is_attitude(shape) for shape in entry.stage)
+    return entry.takes_down() or any(isinstance(shape, Lift) for shape in entry.stage)
 
 
 def _held_before(act: Act, plan: Plan, motion: Motion, known: Lexicon) -> str:

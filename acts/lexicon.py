@@ -24,7 +24,7 @@ from motion.things import FIXTURES
 
 from .frames import Frame
 from .plan import Act, problem
-from .shapes import Shape
+from .shapes import Posture, Shape
 
 OURS = Path(__file__).with_name("lexicon")
 FOLDERS = "PASDEDEUX_ACTS"
@@ -102,6 +102,11 @@ class Entry(BaseModel):
         if self.shown and not self.caption:
             raise ValueError("an act that is shown needs a caption")
         return self
+
+    def takes_down(self) -> bool:
+        """True for an act with a posture off one's feet in which somebody stays from then on."""
+        postures = [shape for shape in self.stage if isinstance(shape, Posture) and shape.posture != "stands"]
+        return any(not (posture.passing or posture.already) for posture in postures)
 
 
 @dataclass(frozen=True, eq=False)

@@ -112,11 +112,6 @@ class Posture(_Shape):
     gently: bool = False
 
 
-def is_attitude(shape: _Shape) -> bool:
-    """True for a posture off one's feet in which somebody stays from then on."""
-    return isinstance(shape, Posture) and not (shape.passing or shape.already) and shape.posture != "stands"
-
-
 class Jump(_Shape):
     """Jumps on the spot, so many where the words give no number."""
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from acts.frames import Event, Frame, Match, Ref
 from acts.lexicon import SEATS, Entry, Lexicon, is_fixture, kind_of, lexicon
 from acts.plan import MOST_ACTS, ON_TIPTOE, Act, Plan, Relation, Span, Unread, other_of
-from acts.shapes import Go, is_attitude
+from acts.shapes import Go
 from motion import InputError
 
 from .matching import Found, completed, formations, held, is_next_to, matcher, noun_acts, of_the_last, repeated, seated
@@ -382,7 +382,7 @@ class _Planner:
         if event.state:
             return True
         told = {act.id for act in self._acts if set(act.agents) & set(agents)}
-        if event.joint == "while" and event.beside is not None and any(is_attitude(shape) for shape in entry.stage):
+        if event.joint == "while" and event.beside is not None and entry.takes_down():
             told.discard(self._of.get(event.beside, ""))  # "pats him while both are sitting"
         ongoing = event.ongoing or (event.joint == "while" and event.direction != "down")
         return ongoing and not told
