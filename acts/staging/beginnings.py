@@ -234,12 +234,12 @@ def roomy(stand: Standing, poses: Mapping[int, Sequence[Pose]], fixed: Sequence[
 def _together(stand: Standing, poses: Mapping[int, Sequence[Pose]]) -> tuple[Array, Array]:
     """(N, 22, 3) of both people at every frame at which one of them has a pose."""
     frames = sorted({frame for listed in poses.values() for frame, _ in listed})
-    places = []
+    bodies = []
     for person in (0, 1):
         listed = poses.get(person) or [(0, upright(stand.places[person], float(stand.headings[person])))]
         known = np.array([frame for frame, _ in listed])
-        places.append(np.stack([listed[int(np.abs(known - frame).argmin())][1] for frame in frames]))
-    return places[0], places[1]
+        bodies.append(np.stack([listed[int(np.abs(known - frame).argmin())][1] for frame in frames]))
+    return bodies[0], bodies[1]
 
 
 def distance(a: Array, b: Array) -> float:
