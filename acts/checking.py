@@ -44,6 +44,8 @@ WAYS = {
     "counterclockwise": "left",
 }
 """Directions that a rule may ask for; those of the clock are seen from above."""
+UNSAID: Mapping[str, str | float] = {"side": "any", "part": "body", "way": "any", "n": 1, "metres": 1.2}
+"""What a rule asks for where the words say nothing: ``metres`` is how far apart at least."""
 
 
 @dataclass(frozen=True)
@@ -251,46 +253,24 @@ def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
     part = part if part in BODY else "body"
     part = f"{act.part_side} {part}" if act.part_side else part
     way = WAYS.get(act.direction or "", "any")
-    values: dict[str, Any] = {"side": act.side or "any", "part": part, "way": way}
-    values |= {"metres": 0.7 * act.distance} if act.distance else {}
-    return [cast(rule, who, whom, **values, n=act.times or 1, counted=bool(act.times)) for rule in entry.rule]
+    said: dict[str, str | float] = {"side": act.side or "any", "part": part, "way": way, "n": act.times or 1}
+    said |= {"metres": 0.7 * act.distance} if act.distance else {}
+    return [cast(rule, who, whom, counted=bool(act.times), **said) for rule in entry.rule]
 
 
 @lru_cache(maxsize=4096)
-def cast(
-    rule: str,
-    who: str,
-    whom: str,
-    *,
-    side: str = "any",
-    part: str = "body",
-    way: str = "any",
-    n: int = 1,
-    counted: bool = False,
-    metres: float = 1.2,
-) -> str:
+def cast(rule: str, who: str, whom: str, *, counted: bool = False, **said: str | float) -> str:
     """A rule of the lexicon with an act's own values in the place of their names.
 
     Args:
         rule: of an entry.
         who: "a" or "b", the agent.
         whom: the other.
-        side: "left", "right", "both" or "any".
-        part: a part of the body, as predicates know it.
-        way: "forward", "back", "left", "right" or "any".
-        n: how often.
         counted: the words say how often, so that ``times(…, n)`` is "exactly".
-        metres: how far apart at least.
+        said: what they say in place of :data:`UNSAID`.
     """
-    values: dict[str, ast.expr] = {
-        "who": ast.Name(who),
-        "whom": ast.Name(whom),
-        "side": ast.Constant(side),
-        "part": ast.Constant(part),
-        "way": ast.Constant(way),
-        "n": ast.Constant(n),
-        "metres": ast.Constant(metres),
-    }
+    values: dict[str, ast.expr] = {name: ast.Constant(value) for name, value in {**UNSAID, **said}.items()}
+    values |= {"who": ast.Name(who), "whom": ast.Name(whom)}
 
     class Cast(ast.NodeTransformer):
         def visit_Name(self, node: ast.Name) -> ast.expr:

@@ -9,7 +9,7 @@ is below the hand and out to the side, or where the gesture needs it, and the bo
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,6 +47,8 @@ class Stroke:
         uneven: the right of two hands is a little higher than the left.
         in_time: two people make it in one time.
         at_other: it is at the other's body.
+        on: "head" or "trunk": the part of one's own body that the hand is on. The network is held to it there, and of
+            somebody on their way to the head as well; other gestures are a draft.
     """
 
     at: Place = (0.0, 0.0, 0.0)
@@ -63,6 +65,7 @@ class Stroke:
     uneven: bool = False
     in_time: bool = False
     at_other: bool = False
+    on: str = ""
 
     def way(self, out: float, seconds: Array) -> Array:
         """A wrist's way (N, 3) in metres; ``out`` is 1 for the left hand and -1 for the right."""
@@ -103,24 +106,26 @@ GESTURES: Mapping[str, Stroke] = {
     ),
     "swings": Stroke(at=(0.06, 0.0, 0.0), from_shoulder=True, rate=1 / 1.4, in_time=True),
     # At the head; the fingertips of a salute are at the temple, the palm at an ear is higher than the wrist
-    "salutes": Stroke(at=(0.03, 0.15, 0.15), from_shoulder=True, pole=(1.0, -0.25, 0.0), sinks=True),
-    "phone": Stroke(at=(0.2, 0.54, 0.06), pole=(0.6, -1.0, 0.3)),
-    "ears": Stroke(at=(0.2, 0.54, 0.06), pole=(0.9, -1.0, 0.2), both=True),
-    "eyes": Stroke(at=(0.08, 0.58, 0.18), pole=(0.7, -1.0, 0.1), both=True),
+    "salutes": Stroke(at=(0.03, 0.15, 0.15), from_shoulder=True, pole=(1.0, -0.25, 0.0), sinks=True, on="head"),
+    "phone": Stroke(at=(0.2, 0.54, 0.06), pole=(0.6, -1.0, 0.3), on="head"),
+    "ears": Stroke(at=(0.2, 0.54, 0.06), pole=(0.9, -1.0, 0.2), both=True, on="head"),
+    "eyes": Stroke(at=(0.08, 0.58, 0.18), pole=(0.7, -1.0, 0.1), both=True, on="head"),
     "photo": Stroke(at=(0.08, 0.58, 0.28), pole=(0.7, -1.0, 0.1), both=True),
-    "head": Stroke(at=(0.12, 0.66, -0.05), pole=(1.0, 0.1, 0.3)),
-    "mouth": Stroke(at=(0.07, 0.48, 0.17)),
+    "head": Stroke(at=(0.12, 0.66, -0.05), pole=(1.0, 0.1, 0.3), on="head"),
+    "mouth": Stroke(at=(0.07, 0.48, 0.17), on="head"),
     "fans": Stroke(at=(0.12, 0.42, 0.22), around=(0.1, 0.0, 0.0), rate=2.0, parallel=True),
-    "brushes": Stroke(at=(0.08, 0.49, 0.2), by=(0.045, 0.0, 0.0), rate=2.2, pole=(0.8, -0.8, 0.0)),
-    "eats": Stroke(at=(0.085, 0.31, 0.24), by=(0.01, -0.15, 0.06), rate=0.5),
-    "combs": Stroke(at=(0.14, 0.6, 0.02), by=(0.0, 0.06, -0.05), rate=0.8, pole=(1.0, -0.4, 0.2)),
+    "brushes": Stroke(at=(0.08, 0.49, 0.2), by=(0.045, 0.0, 0.0), rate=2.2, pole=(0.8, -0.8, 0.0), on="head"),
+    "eats": Stroke(at=(0.085, 0.31, 0.24), by=(0.01, -0.15, 0.06), rate=0.5, on="head"),
+    "combs": Stroke(at=(0.14, 0.6, 0.02), by=(0.0, 0.06, -0.05), rate=0.8, pole=(1.0, -0.4, 0.2), on="head"),
     # At the trunk
-    "hips": Stroke(at=(0.21, 0.1, 0.0), pole=(1.0, 0.0, -0.5)),
-    "chest": Stroke(at=(0.02, 0.36, 0.2), pole=(0.6, -1.0, -0.1)),
-    "belly": Stroke(at=(0.04, 0.14, 0.2)),
-    "behind": Stroke(at=(0.04, 0.02, -0.18), pole=(1.0, -0.2, -0.6)),
-    "crossed": Stroke(at=(-0.1, 0.24, 0.17), by=(0.0, -0.05, 0.0), in_turn=True, pole=(0.6, -1.0, 0.0)),
-    "beats": Stroke(at=(0.06, 0.37, 0.22), by=(0.0, 0.0, 0.07), rate=1.8, in_turn=True, pole=(1.0, -0.5, 0.0)),
+    "hips": Stroke(at=(0.21, 0.1, 0.0), pole=(1.0, 0.0, -0.5), on="trunk"),
+    "chest": Stroke(at=(0.02, 0.36, 0.2), pole=(0.6, -1.0, -0.1), on="trunk"),
+    "belly": Stroke(at=(0.04, 0.14, 0.2), on="trunk"),
+    "behind": Stroke(at=(0.04, 0.02, -0.18), pole=(1.0, -0.2, -0.6), on="trunk"),
+    "crossed": Stroke(at=(-0.1, 0.24, 0.17), by=(0.0, -0.05, 0.0), in_turn=True, pole=(0.6, -1.0, 0.0), on="trunk"),
+    "beats": Stroke(
+        at=(0.06, 0.37, 0.22), by=(0.0, 0.0, 0.07), rate=1.8, in_turn=True, pole=(1.0, -0.5, 0.0), on="trunk"
+    ),
     "bends": Stroke(at=(0.2, 0.42, 0.2), pole=(0.3, -1.0, 0.1)),
     # Before the body
     "claps": Stroke(at=(0.145, 0.28, 0.3), by=(0.07, 0.0, 0.0), rate=2.0, both=True, sinks=True),
@@ -366,7 +371,8 @@ def hand_parts(
         late = 0.0 if GESTURES[gesture.gesture].in_time else late_by(seed, person, stretch.frames)
         joints, places = _arms(gesture, person, at, stretch, own, both=both, late=late)
         if len(shown := np.isin(at, stretch.shown(at)).nonzero()[0]):
-            yield _known(person, joints, at[shown], places[shown], stretch)
+            part = _known(person, joints, at[shown], places[shown], stretch)
+            yield replace(part, soft=not GESTURES[gesture.gesture].on)
 
 
 def outer_hand_parts(score: Score, moves: Sequence[Move], stretch: Stretch) -> Iterator[KnownFrames]:
@@ -426,6 +432,10 @@ def _arms(
         elif both and hangs(was):
             joints += [elbow_joint, wrist_joint]
             places.append(rested(side, seconds, was))
+    if GESTURES[gesture.gesture].on == "head" and person in stretch.ways:
+        stands, head = upright(np.zeros(2), 0.0), JOINT["head"]
+        joints.append(head)
+        places.append(np.tile(stands[head] - stands[0], (len(at), 1, 1)))
     return joints, np.einsum("nij,nsj->nsi", turns, np.concatenate(places, axis=1))
 
 

@@ -260,7 +260,7 @@ class _Beat:
         before = self.scene[:, self.start - 1].astype(np.float64) if self.start else None
         for arms in hand_parts(score, moves, posed, stretch, before, self.story.seed):
             if score.lift is None or "ab"[arms.person] == score.lift.carrier:
-                parts += softened([arms])
+                parts.append(arms)
         parts += softened(outer_hand_parts(score, moves, stretch))
         return parts
 

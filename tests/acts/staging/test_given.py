@@ -7,6 +7,7 @@ import pytest
 
 from acts import read
 from acts.staging.given import Story, plan_parts
+from acts.staging.poses import JOINT
 from acts.staging.stage import scores_of
 from acts.staging.window import KnownFrames, Window
 from motion import FPS
@@ -27,6 +28,21 @@ def poses_of(words: str) -> list[KnownFrames]:
 def test_jumps_are_held_and_postures_are_drafts() -> None:
     assert {part.soft for part in poses_of("A jumps.") if part.person == 0} == {False}
     assert {part.soft for part in poses_of("A kneels.") if part.person == 0} == {True}
+
+
+@pytest.mark.parametrize(
+    ("words", "held", "head"),
+    [
+        ("A scratches his head.", True, False),
+        ("A puts his hands on his hips.", True, False),
+        ("A walks past B holding a phone to his ear.", True, True),
+        ("A waves.", False, False),
+    ],
+)
+def test_a_hand_on_ones_own_body_is_held_as_a_touch_is(words: str, held: bool, head: bool) -> None:
+    (arms,) = (part for part in poses_of(words) if part.person == 0 and JOINT["right_elbow"] in part.joints)
+    assert arms.soft is not held
+    assert (JOINT["head"] in arms.joints) is head, "of somebody on their way the head is where the hand finds it"
 
 
 @pytest.mark.parametrize("words", ["They walk up to each other and hug.", "A turns away while B is talking to A."])
