@@ -156,11 +156,12 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
 
 
 def shown_caption(act: Act, entry: Entry) -> str:
-    """The caption in whose words the verdict on an act is given: one with the act's own verb where there is one."""
+    """The caption in whose words the verdict on an act is given: with its direction, or its own verb, where one has."""
     usual, own = naming(act, entry), f"[{act.act.split('-')[0]}]"
-    alike = (text for text in entry.caption if own in text and _slots(text) == _slots(usual))
-    alike = (text for text in alike if act.thing or not text.endswith("something"))
-    return usual if own in usual else next(alike, usual)
+    alike = [text for text in entry.caption if own in text and _slots(text) == _slots(usual)]
+    alike = [text for text in alike if act.thing or not text.endswith("something")]
+    alike.sort(key=lambda text: text != usual)
+    return next((text for text in alike if act.direction in text.split()), next(iter(alike), usual))
 
 
 def _slots(caption: str) -> list[str]:
@@ -232,7 +233,9 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return act.patient is None or act.part_of in act.agents
     if _is_target(token) and any(slot in shown_caption(act, entry) for slot in ("{b}", "{a+b}")):
         return not any(c.lower_.endswith(("self", "selves")) for c in token.children)
-    if any(forms & each for each in (said_words(entry.caption), set(" ".join(act.manner).split()))):
+    loose = token.pos_ in ("ADV", "ADP") and not _is_target(token)  # "dances around" is more than "dances"
+    said = said_words((shown_caption(act, entry),) if loose else entry.caption)
+    if any(forms & each for each in (said, set(" ".join(act.manner).split()))):
         return True
     if words.likeness.get(lemma) in act.manner:
         return True

@@ -61,7 +61,8 @@ def past(verb: str) -> str:
     return f"{verb}d" if verb.endswith("e") else f"{gerund(verb).removesuffix('ing')}ed"
 
 
-def _plural(part: str) -> str:
+def plural(part: str) -> str:
+    """The plural of a part of the body."""
     return {"foot": "feet"}.get(part, f"{part}s")
 
 
@@ -80,7 +81,7 @@ def worded(act: Act, caption: str) -> str:
         "side": act.side if act.side in ("left", "right") else "",
         "thing": act.thing or "",
         "direction": act.direction or "",
-        "limb": f"both {_plural(limb)}" if act.side == "both" else f"the {act.side or ''} {limb}",
+        "limb": f"both {plural(limb)}" if act.side == "both" else f"the {act.side or ''} {limb}",
     }
 
     def fill(match: re.Match[str]) -> str:
@@ -110,7 +111,7 @@ def by_limb(act: Act, caption: str) -> str:
     """The limb on the act's side that does it: " with the left foot"."""
     own = act.part if act.part in closed("limbs") and act.part_of in act.agents else None
     limb = own or ("foot" if _BY_FOOT.search(caption) else "hand")
-    return f" with both {_plural(limb)}" if act.side == "both" else f" with the {act.side} {limb}"
+    return f" with both {plural(limb)}" if act.side == "both" else f" with the {act.side} {limb}"
 
 
 def with_thing(act: Act, caption: str) -> tuple[Act, str]:
@@ -257,7 +258,7 @@ def _phrase(act: Act, entry: Entry | None) -> str:
         "side": side.strip(),
         "thing": act.thing or "something",
         "direction": act.direction or "",
-        "limb": f"both {_plural(act.part or 'hand')}" if act.side == "both" else f"{side}{act.part or 'hand'}",
+        "limb": f"both {plural(act.part or 'hand')}" if act.side == "both" else f"{side}{act.part or 'hand'}",
     }
     filled = _SLOT.sub(lambda m: f"{values.get(m[1], '')} ", caption.replace("{b} on the {part}", "{part}"))
     kept: list[str] = []

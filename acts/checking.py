@@ -35,15 +35,8 @@ ONLY = {"tried": "only tried", "offered": "only offered", "pretended": "only pre
 NO_RULE = "nothing measures it"
 """The reason where an entry has no rule."""
 
-WAYS = {
-    "forward": "forward",
-    "back": "back",
-    "left": "left",
-    "right": "right",
-    "clockwise": "right",
-    "counterclockwise": "left",
-}
-"""Directions that a rule may ask for; those of the clock are seen from above."""
+_OF_THE_CLOCK = {"clockwise": "right", "counterclockwise": "left"}
+"""Directions as seen from above, and those that a rule asks for."""
 UNSAID: Mapping[str, str | float] = {"side": "any", "part": "body", "way": "any", "n": 1, "metres": 1.2}
 """What a rule asks for where the words say nothing: ``metres`` is how far apart at least."""
 
@@ -252,7 +245,8 @@ def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
     part = named if named in BODY else vocabulary().part(named)
     part = part if part in BODY else "body"
     part = f"{act.part_side} {part}" if act.part_side else part
-    way = WAYS.get(act.direction or "", "any")
+    way = _OF_THE_CLOCK.get(act.direction or "", act.direction)
+    way = way if way in ("forward", "back", "left", "right") else "any"
     said: dict[str, str | float] = {"side": act.side or "any", "part": part, "way": way, "n": act.times or 1}
     said |= {"metres": 0.7 * act.distance} if act.distance else {}
     return [cast(rule, who, whom, counted=bool(act.times), **said) for rule in entry.rule]

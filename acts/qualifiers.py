@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from motion.metrics.sentences.touches import BODY
 
 from .accounting import said_words, shown_caption
+from .captions import plural
 from .lexicon import Entry
 from .plan import FROM_BEHIND, ON_TIPTOE, Act
 from .reading.vocabulary import closed, is_act, vocabulary
@@ -50,8 +51,10 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     both = _BOTH.search(said) if act.side == "both" else None
     if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
-    leaves = "backs" in names and act.direction in ("away", "back")  # "backs away"
+    leaves = names & {"backs", "turns_away"} and act.direction in ("away", "back")  # "backs away"
+    leaves = leaves or (act.direction == "back" and not goes and "{b}" in caption)  # "hits back": in return
     own = act.direction in said_words((*entry.frames, *entry.caption)) and act.direction in ("up", "down", "out")
+    own = own or (act.direction == "away" and re.search(r"\boff\b", said) is not None)  # "takes off his shoes"
     if act.direction is not None and act.direction not in words and "way" not in names and not (own or leaves):
         yield "which way", _goes_way(act, who) if goes else ""
     if abs(act.speed - 1.0) > 0.3:  # who strolls walks
@@ -72,7 +75,7 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     if (
         act.part
         and "part" not in names
-        and not any(vocabulary().part(act.part) == vocabulary().part(word) != "" for word in words)
+        and words.isdisjoint((act.part, plural(act.part)))
         and "{part}" not in caption
         and "{limb}" not in caption
     ):

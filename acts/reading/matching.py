@@ -185,6 +185,10 @@ def completed(
         yield replace(event, subject=event.object, object=None), 0.0
     if event.object is not None or event.dative is not None:
         return
+    before = (e.object for e in events[:number] if e.lemma == event.lemma and "back" in event.words)
+    returned = any(ref is not None and ref.kind == "person" for ref in before)  # "shoves him, and he shoves back"
+    if returned and event.subject is not None and (whom := other_of(event.subject.who)):
+        yield replace(event, object=Ref("person", whom)), 0.0
     beside = events[event.beside] if event.beside is not None and event.joint in _SHARING else None
     after = [other for other in events if other.beside == number and other.joint in _SHARING]
     for other in (beside, *after):

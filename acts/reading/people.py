@@ -118,7 +118,7 @@ class Cast:
         acts = token.dep_ in ("nsubj", "nsubjpass", "poss")
         # "her teddy bear"
         small = token.text.islower() and not self._words.is_usual_person(lemma) and not acts
-        if token.tag_ == "NNP" and token.pos_ == "PROPN" and not self._words.is_place(lemma) and not small:
+        if token.tag_ == "NNP" and token.pos_ == "PROPN" and lemma not in closed("capitals") and not small:
             return self._named(text)
         if not self._is_somebody(token, lemma, children):
             return None

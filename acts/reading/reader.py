@@ -240,29 +240,26 @@ class Reader:
 
     def _polarity(self, token: Token, head: Token | None, event: Event) -> None:
         children = {child.lower_ for child in token.children if child.dep_ in ("neg", "det", "preconj", "advmod", "cc")}
-        event.denied = has(token, "neg") or bool(children & {"never", "hardly", "barely"})
-        if event.subject is not None and event.subject.lemma in ("nobody", "neither", "none", "noone"):
-            event.denied = True
-        for child in token.children:
-            if child.dep_ in ("nsubj", "nsubjpass") and any(c.lower_ in ("no", "neither") for c in child.children):
-                event.denied = True
-            if child.dep_ == "aux" and child.lower_ in self._words.modals["wished"]:
-                event.modality = "wished"
+        subjects = [child for child in token.children if child.dep_ in ("nsubj", "nsubjpass")]
+        marks = {c.lower_ for c in token.children if c.dep_ in ("mark", "prep")}
+        above = token.head
+        instead = {above.lower_, above.head.lower_, *(c.lower_ for c in above.children)} & {"instead"}
+        event.denied = (
+            has(token, "neg")
+            or bool(children & {"never", "hardly", "barely"})
+            or (event.subject is not None and event.subject.lemma in closed("nobody"))
+            or any(c.lower_ in ("no", "neither") for child in subjects for c in child.children)
+            or (token.dep_ == "advcl" and "than" in marks)  # "rather than shake hands, they bow"
+            or (token.dep_ == "pcomp" and (bool(instead) or above.lower_ in ("without", "from")))
+        )
+        if any(child.dep_ == "aux" and child.lower_ in self._words.modals["wished"] for child in token.children):
+            event.modality = "wished"
         if children & closed("nearly"):
             event.modality = "tried"
-        marks = {c.lower_ for c in token.children if c.dep_ in ("mark", "prep")}
         if token.dep_ == "advcl" and ({"as", "if"} <= marks or {"as", "though"} <= marks or "like" in marks):
             event.modality = "pretended"  # "walks up as if to hug"
-        if token.dep_ == "pcomp" and token.head.lower_ == "like" and not seems(token.head.head):
+        if token.dep_ == "pcomp" and above.lower_ == "like" and not seems(above.head):
             event.modality = "pretended"  # "moves the arms like rowing a boat"
-        if token.dep_ == "advcl" and "than" in marks:
-            event.denied = True  # "rather than shake hands, they bow"
-        if token.dep_ == "pcomp" and (
-            token.head.lower_ in ("without", "instead", "from")
-            or "instead" in (token.head.head.lower_, *(c.lower_ for c in token.head.children))
-        ):
-            event.denied = True
-        above = token.head
         if token.dep_ == "xcomp" and above.pos_ == "ADJ":  # "too proud to cry", "unable to stop", "ready to box"
             kinds = self._words.adjectives
             event.denied |= above.lower_ in kinds["not"] or any(c.lower_ == "too" for c in above.children)

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence, Set
 from acts.frames import Event
 from acts.lexicon import Lexicon, is_fixture
 from acts.plan import Act, Relation
-from acts.shapes import Gesture, Go, Hold, Shape, Strike
+from acts.shapes import Gesture, Go, Hold, Lift, Shape, Strike
 
 BESIDE = frozenset(("gesture", "limb", "words"))
 """Shapes of what a person can do on their way."""
@@ -66,6 +66,9 @@ def related(
         if kind == "after":
             act = acts[act.id] = _upright_again(other, _turned_to(other, act, known), known)
             kind = "with" if act.act == other.act == "stand-tall" else kind  # "straighten and rise"
+            if _walks_on(other, act, known):
+                kind, act = "with", act.model_copy(update={"act": "walk-ahead", "patient": None, "thing": None})
+                acts[act.id] = act
         apart = not set(other.agents) & set(act.agents)
         waits = _waits(act, known) and not then  # "then she waits" is said of what comes next
         if kind == "after" and apart and (other.already or act.already or waits):
@@ -130,6 +133,13 @@ def _upright_again(first: Act, then: Act, known: Lexicon) -> Act:
     if not bent or then.act != "stand-up" or set(first.agents) != set(then.agents):
         return then
     return then.model_copy(update={"act": "stand-tall"})
+
+
+def _walks_on(first: Act, then: Act, known: Lexicon) -> bool:
+    """True for a person who carries the other and walks, with them still in the arms or on the back."""
+    carries = any(isinstance(shape, Lift) and shape.carry != "up" for shape in known.entries[first.act].stage)
+    leaves = then.direction == "away" or (_goes(then, {"away"}, known) and not (then.thing or then.direction))
+    return carries and first.agents == then.agents and not leaves and _goes(then, {"past", "away", "ahead"}, known)
 
 
 def _answers_blow(first: Act, then: Act, known: Lexicon) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from string import ascii_lowercase
@@ -145,11 +146,11 @@ def other_language(text: str) -> str | None:
         return "There are no words in this text: write in English what the two people do."
     if sum(ord(c) < 0x250 for c in letters) < 0.6 * len(letters):
         return "This is not in the Latin alphabet: write in English."
-    words = [word for word in "".join(c if c.isalpha() or c == "'" else " " for c in text).split() if len(word) > 1]
-    if len(words) >= 4 and not any(word.lower() in closed("english") for word in words):
-        unknown = sum(not is_word(word.lower()) for word in words)
-        if unknown >= 0.4 * len(words):
-            return "This does not seem to be English: write in English."
+    words = [word for word in re.findall(r"[^\W\d_']+(?:'[^\W\d_]+)*", text.lower()) if len(word) > 1]
+    unknown = sum(not is_word(word) for word in words)
+    share = 0.01 if not closed("elsewhere").isdisjoint(words) else 0.4 if len(words) >= 4 else 2.0
+    if closed("english").isdisjoint(words) and unknown >= share * len(words) > 0:
+        return "This does not seem to be English: write in English."
     return None
 
 

@@ -292,9 +292,15 @@ class ClauseTree:
             first = next(clauses, None)
             if first is not None and token.dep_ == "conj" and token.tag_ in ("VBZ", "VBD"):
                 finite = (h for h in (first, *clauses) if is_finite(h))
-                first = self._nearer(token, next(finite, first))
+                first = self._listed(token) or self._nearer(token, next(finite, first))
             self._heads[token.i] = first
         return self._heads[token.i]
+
+    def _listed(self, token: Token) -> Token | None:
+        """The verb of a relative clause that goes on with a list: "pushes B, who stumbles, gets up and runs"."""
+        verb = next((t for t in reversed(self.doc[: token.i]) if t.tag_ in ("VBZ", "VBD")), token)
+        goes_on = verb.dep_ == "relcl" and token.nbor(-1).text == "," and has(token, "cc")
+        return verb if goes_on and not has(token, "nsubj") else None
 
     def _nearer(self, token: Token, head: Token) -> Token:
         """The main clause behind ``head`` with its own subject: "he talks, but she turns and covers her ears"."""

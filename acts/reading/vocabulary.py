@@ -84,10 +84,6 @@ class Vocabulary:
         """True for the nouns of people that stand in ``words.toml``, and not for WordNet's rarer ones."""
         return any(lemma in self._people[key] for key in ("m", "f", "child", "more"))
 
-    def is_place(self, lemma: str) -> bool:
-        """True for nouns with a capital that name no person: days and months."""
-        return lemma in ("monday", "friday", "sunday", "saturday", "christmas", "english", "god")
-
     def sex(self, lemma: str) -> str:
         """ "m", "f" or "" for a noun of a person."""
         usual = next((sex for sex in "mf" if lemma in self._people[sex]), None)

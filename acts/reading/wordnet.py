@@ -8,45 +8,18 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
 _HERE = Path(__file__).parent
 VERBS, PEOPLE, NOUNS = _HERE / "verbs.tsv", _HERE / "people.tsv", _HERE / "nouns.tsv"
-_KINDS = {
-    "body": "00001740",
-    "change": "00109660",
-    "cognition": "00588221",
-    "communication": "00740595",
-    "competition": "01072280",
-    "consumption": "01156852",
-    "contact": "01205714",
-    "creation": "01617210",
-    "emotion": "01759344",
-    "motion": "01831549",
-    "perception": "02105828",
-    "possession": "02199608",
-    "social": "02367050",
-    "stative": "02603699",
-    "weather": "02756558",
-}
-"""WordNet's kinds of verbs, and the number of the synset from which on each kind stands."""
 BODILY = frozenset(("body", "competition", "consumption", "contact", "motion"))
 """WordNet's kinds of verbs that bodies show; others are matched only with verbs of the same meaning."""
 
 
-class _Verbs(NamedTuple):
-    senses: dict[str, tuple[str, ...]]
-    above: dict[str, tuple[str, ...]]
-
-
 @cache
-def _verbs() -> _Verbs:
-    senses: dict[str, tuple[str, ...]] = {}
-    above: dict[str, tuple[str, ...]] = {}
-    for line in VERBS.read_text(encoding="utf-8").splitlines():
-        kind, key, *rest = line.split("\t")
-        (senses if kind == "v" else above)[key] = tuple(rest[0].split()) if rest else ()
-    return _Verbs(senses, above)
+def _verbs(table: str) -> dict[str, tuple[str, ...]]:
+    """A table of verbs: "v" has their synsets, "s" those above one, and "k" the first synset of each kind."""
+    rows = (line.split("\t") for line in VERBS.read_text(encoding="utf-8").splitlines())
+    return {key: tuple(rest[0].split()) if rest else () for name, key, *rest in rows if name == table}
 
 
 @cache
@@ -83,29 +56,29 @@ def is_act(noun: str) -> bool:
 
 def is_verb(lemma: str) -> bool:
     """True if WordNet knows a verb of this lemma."""
-    return lemma in _verbs().senses
+    return lemma in _verbs("v")
 
 
 def synset(name: str) -> str | None:
     """The synset that a name such as "carry.v.01" stands for; None if there is none."""
     lemma, _, number = name.rpartition(".v.")
-    senses = _verbs().senses.get(lemma, ())
+    senses = _verbs("v").get(lemma, ())
     return senses[int(number) - 1] if number.isdigit() and 0 < int(number) <= len(senses) else None
 
 
 def senses(lemma: str) -> tuple[str, ...]:
     """The synsets of a verb, the most frequent first."""
-    return _verbs().senses.get(lemma, ())
+    return _verbs("v").get(lemma, ())
 
 
 def above(sense: str) -> tuple[str, ...]:
     """The synsets above one: its hypernyms."""
-    return _verbs().above.get(sense, ())
+    return _verbs("s").get(sense, ())
 
 
 def kind(sense: str) -> str:
     """The kind of a verb's synset: "body", "motion", "contact", "cognition", …."""
-    return [name for name, first in _KINDS.items() if first <= sense][-1]
+    return [name for name, (first,) in _verbs("k").items() if first <= sense][-1]
 
 
 def usual_kind(lemma: str) -> str:
@@ -122,11 +95,11 @@ def meanings(lemma: str, most: int = 3, height: int = 2) -> list[tuple[str, floa
         most: senses that are looked at; each costs 1 more than the one before.
         height: steps up; each costs 1.
     """
-    verbs, costs = _verbs(), dict[str, float]()
-    for rank, sense in enumerate(verbs.senses.get(lemma, ())[:most]):
+    costs = dict[str, float]()
+    for rank, sense in enumerate(senses(lemma)[:most]):
         level, cost = [sense], float(rank)
         for _ in range(height + 1):
             for each in level:
                 costs[each] = min(cost, costs.get(each, cost))
-            level, cost = [up for each in level for up in verbs.above.get(each, ())], cost + 1.0
+            level, cost = [up for each in level for up in above(each)], cost + 1.0
     return sorted(costs.items(), key=lambda item: item[1])

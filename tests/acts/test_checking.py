@@ -296,6 +296,9 @@ def test_another_skeleton_is_refused() -> None:
         ("A puts both hands on B's hips.", "A puts both hands on B's hip"),
         ("A kicks with the left foot.", "A kicks B with the left foot"),
         ("A is sitting.", "A sits"),
+        ("A turns away from B.", "A turns away"),
+        ("A pushes B away.", "A pushes B away"),
+        ("They look at each other.", "they face each other"),
     ],
 )
 def test_a_verdict_names_the_thing_and_the_qualifiers_of_the_words(sentence: str, words: str) -> None:

@@ -100,6 +100,18 @@ def goes_metres(m: Motion, who: int, least: float, most: float) -> Mask:
 
 
 @predicate
+def goes_at(m: Motion, who: int, least: float, most: float, metres: float = 0.6) -> Mask:
+    """On the way for ``metres`` at a speed between ``least`` and ``most`` metres a second."""
+    return _gained(m, np.where(m.speeds[who] < most, m.speeds[who], 0.0), metres, least)
+
+
+@predicate
+def goes_ahead(m: Motion, who: int, metres: float = 0.5) -> Mask:
+    """Goes the way they face, by ``metres`` or more."""
+    return _gained(m, np.sum(m.velocities[who] * m.forward[who], axis=-1), metres, 0.15)
+
+
+@predicate
 def wanders(m: Motion, who: int, metres: float = 0.6) -> Mask:
     """On the way for ``metres`` or more, and back to within half of the way from where it began: all or none."""
     gone = m.speeds[who][m.speeds[who] > WALK].sum() / m.fps

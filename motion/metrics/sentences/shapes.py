@@ -161,20 +161,6 @@ def off_floor(m: Motion, who: int, metres: float = 0.2, seconds: float = 0.4) ->
 
 
 @predicate
-def goes_at(m: Motion, who: int, least: float, most: float, metres: float = 0.6) -> Mask:
-    """On the way for ``metres`` at a speed between ``least`` and ``most`` metres a second."""
-    speed = m.speeds[who]
-    return keep((speed > least) & (speed < most), m.fps, lambda i, j: speed[i:j].sum() / m.fps >= metres)
-
-
-@predicate
-def goes_ahead(m: Motion, who: int, metres: float = 0.5) -> Mask:
-    """Goes the way they face, by ``metres`` or more."""
-    rate = np.sum(m.velocities[who] * m.forward[who], axis=-1)
-    return keep(rate > 0.15, m.fps, lambda i, j: rate[i:j].sum() / m.fps >= metres)
-
-
-@predicate
 def moves(m: Motion, who: int, speed: float = 0.35) -> Mask:
     """Is on the way, or moves a limb against the body, at ``speed`` m/s or more over a quarter of a second."""
     limbs = np.linalg.norm(m.limbs(who), axis=-1).max(axis=1)

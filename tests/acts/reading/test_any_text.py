@@ -18,6 +18,24 @@ def test_too_long_a_text_is_refused() -> None:
         read("a" * (MOST_CHARACTERS + 1))
 
 
+@pytest.mark.parametrize(
+    ("text", "english"),
+    [
+        ("Sie umarmen sich.", False),
+        ("Er winkt.", False),
+        ("Ils se battent.", False),
+        ("Dos personas bailan.", False),
+        ("Die beiden tanzen Walzer.", False),
+        ("A wvaes.", True),
+        ("Yuki and Hiro embrace.", True),
+        ("They dance el jarabe tapatio.", True),
+    ],
+)
+def test_what_is_not_english_is_said_in_one_line_and_not_read(text: str, english: bool) -> None:
+    plan = read(text)
+    assert (not plan.acts and len(plan.notes) == 1 and "English" in plan.notes[0]) is not english
+
+
 LONG = {
     "one word": "slowly ",
     "commas": ",",

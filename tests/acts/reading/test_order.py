@@ -52,3 +52,17 @@ def test_the_first_of_two_verbs_comes_first(words: str) -> None:
 def test_who_then_sits_down_was_not_seated_before() -> None:
     man, woman = read("The man sits and the woman then sits next to him.").acts[:2]
     assert man.already and not woman.already
+
+
+@pytest.mark.parametrize(
+    ("words", "walk", "kind"),
+    [
+        ("A carries B in his arms and walks to the door.", "walk-ahead", "with"),
+        ("A carries B on his back, then walks forward.", "walk-ahead", "with"),
+        ("A carries B across the room and walks away.", "walk-away", "after"),
+        ("A carries B to the sofa and leaves.", "walk-away", "after"),
+    ],
+)
+def test_who_carries_somebody_and_walks_still_carries_them(words: str, walk: str, kind: str) -> None:
+    then = read(words).acts[1]
+    assert (then.act, [r.kind for r in then.order]) == (walk, [kind])

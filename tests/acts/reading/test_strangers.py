@@ -20,6 +20,14 @@ from tests.acts.reading.reading import told
         ("A bends down, picks up a cup and bows.", [("pick-up-thing", "a", None), ("bow", "a", None)]),
         ("A bends down twice and picks up a cup.", [("bend-down", "a", None), ("pick-up-thing", "a", None)]),
         ("They skip forward together.", [("skip-together", "ab", None)]),
+        # a list that goes on in a relative clause, and a verb that is done in return
+        (
+            "One shoves the other, who stumbles, regains balance and shoves back.",
+            [("push", "a", "b"), ("stumble", "b", None), ("stand-still", "b", None), ("push", "b", "a")],
+        ),
+        # whose shoes they are
+        ("A sits down and B ties his shoes for him.", [("sit-down", "a", None), ("tie-other-shoes", "b", "a")]),
+        ("A takes off his shoes.", [("change-shoes", "a", None)]),
         # WordNet's verbs with their particles
         ("He is bowled over.", [("push-over", "b", "a")]),
         ("He dozes off.", [("lie-down", "a", None)]),
