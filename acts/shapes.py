@@ -30,7 +30,9 @@ _Head = Literal["moves head", "rolls head", "nods", "shakes head", "turns head"]
 _Exercise = Literal["push-ups", "sit-ups", "jumping-jacks", "lifts-weights", "skips-rope", "hops", "rolls", "warms-up"]
 _Acrobatics = Literal["handstand", "cartwheel", "somersault", "frog", "leapfrog", "pirouette", "phrase"]
 _Sport = Literal["kicks-ball", "stops-ball", "shoots", "shoots-bow", "swings-club", "smashes", "rows", "swims"]
-_Fight = Literal["kicks", "shadow-boxes", "slashes", "chops", "arm-wrestles", "thumb-wrestles", "bumps-elbow", "pulls"]
+_Fight = Literal[
+    "kicks", "shadow-boxes", "slashes", "chops", "arm-wrestles", "thumb-wrestles", "bumps-elbow", "bumps-hip", "pulls"
+]
 _Labour = Literal["sweeps", "digs", "ties", "rests-on-knees"]
 
 
@@ -51,7 +53,7 @@ class Go(_Shape):
         backwards: with the face towards where one comes from.
         linked: the two hold each other by the hands or arms.
         stops: it ends early, before what comes next.
-        gait: of a person who goes low over the floor, limps, or walks on tiptoe.
+        gait: of a person who goes low over the floor, limps, skips, or walks on tiptoe.
     """
 
     do: Literal["go"] = "go"
@@ -63,7 +65,7 @@ class Go(_Shape):
     backwards: bool = False
     linked: bool = False
     stops: bool = False
-    gait: Literal["", "crawls", "on the knees", "limps", "on tiptoe"] = ""
+    gait: Literal["", "crawls", "on the knees", "limps", "on tiptoe", "skips"] = ""
 
 
 class Turn(_Shape):

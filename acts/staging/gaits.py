@@ -1,4 +1,4 @@
-"""Gaits that no caption of the training data shows: people crawl, walk on their knees, limp, or sneak on tiptoe.
+"""Gaits that no caption of the training data shows: people crawl, walk on their knees, limp, skip, or sneak on tiptoe.
 
 The whole body is given. Of people on hands and knees it is one pose a place, its phase the way that was gone. Of people
 on two feet, footprints are laid along the way, each in the middle of the time for which its foot carries the body; the
@@ -115,6 +115,8 @@ _TURNED = 0.2
 """Metres that are walked on the spot for each radian of a turn."""
 _TAKES = 0.64
 """Seconds of a step, at least: who goes faster takes longer steps."""
+_FLIGHT = 0.24
+"""Share of a step from the middle of a hop to its end: as long as a body in free fall takes."""
 _LAST = 0.12
 """Share of a cycle by which the last footprint of a foot may be behind the other one."""
 _AHEAD = 0.33
@@ -143,6 +145,7 @@ class Gait:
         pitch, arms: radians by which the trunk leans ahead and the elbows are bent.
         lurch: radians by which the trunk leans over the right leg while that carries the body.
         short: metres by which the left foot falls short of its step, as the right leg carries the body only briefly.
+        hops: metres by which the body leaves the floor on each leg while the other one swings.
     """
 
     length: float
@@ -153,11 +156,13 @@ class Gait:
     arms: float = 0.3
     lurch: float = 0.0
     short: float = 0.0
+    hops: float = 0.0
 
 
 STEPS: Mapping[str, Gait] = {
     "limps": Gait(0.44, (0.05, 0.025), sinks=0.03, pitch=0.12, arms=0.45, lurch=0.16, short=0.14),
     "on tiptoe": Gait(0.4, (0.1, 0.1), heels=0.75, sinks=0.05, pitch=0.16, arms=0.9),
+    "skips": Gait(0.6, (0.3, 0.3), heels=0.3, sinks=0.05, arms=0.6, hops=0.13),
 }
 """The gaits by their names in the lexicon."""
 
@@ -194,6 +199,8 @@ def stepped(gait: str, places: Array, headings: Array) -> Array:
             poses[:, hip], poses[:, knee], poses[:, ankle], goal, ahead, soft=0.01
         )
         poses[:, toe] = poses[:, ankle] + sole
+    hop = (2 * phase - _SWINGS + 0.5) % 1.0 - 0.5  # of a step, from the middle of a swing
+    poses[..., 1] += steps.hops * np.maximum(1 - (hop / _FLIGHT) ** 2, 0.0)[:, None]
     return poses
 
 
@@ -260,7 +267,7 @@ def _trunk(steps: Gait, phase: Array, headings: Array) -> Turns:
 
 
 def step_parts(gait: str, person: int, score: Score, beat: Stretch) -> list[Part]:
-    """The body of a person who limps or walks on tiptoe along a way, as far as it falls into a window."""
+    """The body of a person who limps, skips or walks on tiptoe along a way, as far as it falls into a window."""
     course = beat.course(person)
     poses = stepped(gait, course.places, course.headings)
     if not len(frames := beat.every(OFTEN, SETTLES // 2 if beat.start else 0)):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -365,3 +367,67 @@ def test_strides_of_somebody_who_sneaks_are_not_fast() -> None:
 
     slow, fast = (checked(read("A walks up to B slowly."), duet(way, gap=5.0))[0] for way in (step, run))
     assert slow.done and not fast.done
+
+
+def for_a_while(edit: Callable[[np.ndarray, float], None], frames: int = 40) -> Callable[[float], Motion]:
+    """A motion by its measure: two people who stand, with an edit of some frames."""
+    return lambda measure: apply(duet(gap=1.0), lambda both: edit(both, measure), frames=slice(40, 40 + frames))
+
+
+def tilted(sign: int) -> Callable[[float], Motion]:
+    def edit(both: np.ndarray, degrees: float) -> None:
+        own = np.radians(4.5 + sign * degrees * (np.abs(np.arange(120) - 60) < 20))  # the trunk leans back by 4.5
+        way = np.stack([0 * own, np.cos(own), np.sin(own)], axis=1)
+        both[0, :, index("head")] = both[0, :, index("neck")] + 0.2 * way
+
+    return lambda degrees: duet(lambda both: edit(both, degrees))
+
+
+def hands(both: np.ndarray, ahead: float, up: float = -0.3, base: str = "pelvis") -> None:
+    for edit in each("wrist", (0.2, up, ahead), base):
+        edit(both)
+
+
+def jack(both: np.ndarray, rise: float, over: float = 0.1) -> None:
+    hands(both, 0.0, over, "shoulder")
+    both[0, ..., 1] += rise * (np.arange(120) // 10 % 2)[:, None]
+
+
+def beside(gap: float) -> Motion:
+    return duet(lambda both: np.copyto(both[1], both[0] + [gap, 0, 0]))
+
+
+def bumped(both: np.ndarray, gap: float) -> None:
+    both[0, :, index("left_wrist")] = both[1, :, index("right_wrist")] - [0, 0, gap]
+
+
+def thrust(both: np.ndarray, metres: float, up: float = -0.1) -> None:
+    put("left_wrist", (0.0, up, metres), base="left_shoulder")(both)
+
+
+@pytest.mark.parametrize(
+    ("name", "shown", "beyond", "before"),
+    [
+        ("jump", for_a_while(lambda both, up: np.add.at(both, (0, ..., 1), up), 6), 0.09, 0.07),
+        ("drop-head", tilted(1), 24, 20),
+        ("look-up", tilted(-1), 28, 24),
+        ("punch", for_a_while(thrust, 4), 0.35, 0.31),
+        ("jumping-jacks", for_a_while(jack), 0.04, 0.02),
+        ("jumping-jacks", for_a_while(lambda both, over: jack(both, 0.05, over)), 0.03, -0.03),
+        (
+            "sword-fight",
+            lambda gap: apply(duet(gap=gap), lambda both: thrust(both, 0.4), frames=slice(40, 44)),
+            2.5,
+            2.7,
+        ),
+        ("swing-sword", for_a_while(lambda both, up: thrust(both, 0.4, up), 6), 0.35, 0.2),
+        ("catch-thing", for_a_while(lambda both, ahead: hands(both, ahead, 0.1)), 0.28, 0.24),
+        ("fist-bump", for_a_while(bumped), 0.12, 0.2),
+        ("hip-bump", beside, 0.36, 0.4),
+        ("bump-into", lambda gap: duet(shift((0, 0, 0), (0, 0, 2 - gap))), 0.34, 0.44),
+    ],
+)
+def test_a_rule_holds_beyond_its_limit_and_not_before_it(
+    name: str, shown: Callable[[float], Motion], beyond: float, before: float
+) -> None:
+    assert one(told(name), shown(beyond)).done and not one(told(name), shown(before)).done

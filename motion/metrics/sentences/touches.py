@@ -6,6 +6,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from .joints import SIDES, Array, Mask, Motion, keep, predicate
+from .paths import beside
 
 _SPINE = ("spine1", "spine2", "spine3")
 
@@ -66,6 +67,13 @@ def elbows_meet(m: Motion, gap: float = 0.18) -> Mask:
     """An elbow of a and an elbow of b meet, whose joints are inside the arms."""
     mine, theirs = (m.pair(who, "elbow") for who in (0, 1))
     return np.linalg.norm(mine[:, None] - theirs[None], axis=-1).min(axis=(0, 1)) < gap
+
+
+@predicate
+def hips_meet(m: Motion, gap: float = 0.26) -> Mask:
+    """A hip of a and a hip of b meet, whose joints are inside the bodies, of two who stand side by side."""
+    mine, theirs = (m.pair(who, "hip") for who in (0, 1))
+    return (np.linalg.norm(mine[:, None] - theirs[None], axis=-1).min(axis=(0, 1)) < gap) & beside(m)
 
 
 @predicate

@@ -13,6 +13,7 @@ from acts.staging.gaits import CYCLE, GAITS, STEPS, low_gait, stepped
 from acts.staging.poses import SOLE
 from motion import SMPL22
 from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.language import check
 from motion.metrics.sentences.poses import low
 from tests.inference.followed import Follower
 from tests.inference.test_scenes import positions
@@ -63,6 +64,7 @@ def test_who_crawls_has_the_trunk_level_and_the_hands_on_the_floor() -> None:
         ("He crawls across the floor.", "crawls"),
         ("The baby crawls to her mother.", "crawls"),
         ("She walks on her knees.", "on the knees"),
+        ("He crawls under her legs.", "crawls"),
     ],
 )
 def test_who_crawls_gets_on(monkeypatch: pytest.MonkeyPatch, words: str, gait: str) -> None:
@@ -95,7 +97,7 @@ def test_bones_are_kept_and_a_foot_that_stands_stays(gait: str, metres: float, t
     lengths = np.linalg.norm(poses[:, children] - poses[:, parents], axis=-1)
     np.testing.assert_allclose(lengths, np.tile(SMPL22.bone_lengths[children], (FRAMES, 1)), atol=1e-6)
     stands = standing(poses)
-    assert stands.any(axis=1).all(), "somebody flies"
+    assert stands.any(axis=1).all() is np.bool_(not STEPS[gait].hops or metres < 0.5), "somebody flies"
     assert poses[..., 1].min() > SOLE - 0.01
     both = stands[1:] & stands[:-1]
     glide = np.linalg.norm(np.diff(poses[:, TOES], axis=0)[..., [0, 2]], axis=-1) * 30
@@ -116,7 +118,13 @@ def test_the_body_turns_with_its_way(gait: str) -> None:
 def test_feet_take_turns(gait: str) -> None:
     stands = standing(stepped_way(gait))
     assert (~stands[:, 0]).sum() > 20 and (~stands[:, 1]).sum() > 20
-    assert not (~stands).all(axis=1).any()
+    assert (~stands).all(axis=1).any() == bool(STEPS[gait].hops)
+
+
+def test_who_skips_is_seen_to() -> None:
+    assert {move.gait for move in moves("They skip forward together.")} == {"skips"}
+    poses = stepped_way("skips", 3.0)
+    assert check("happens(both(walks(a, 0.6), hops(a, 0.08)))", Motion(np.stack([poses, np.add(poses, [1.0, 0, 0])])))
 
 
 def test_who_sneaks_has_the_heels_up() -> None:

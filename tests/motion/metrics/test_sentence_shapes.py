@@ -131,6 +131,7 @@ DOES: dict[str, tuple[Motion, str]] = {
     "in_front": (duet(), "a"),
     "at_others_start": (duet(shift((0, 0, 0), (0, 0, 2))), "a"),
     "arm_on": (duet(elbow_on), "a, 'shoulder'"),
+    "hips_meet": (duet(lambda both: np.copyto(both[1], both[0] + [0.36, 0, 0])), ""),
     "alike": (duet(swing(0, "left"), swing(1, "left")), ""),
     "copies": (duet(swing(0, "left"), swing(1, "left", 0.8)), "b"),
 }
