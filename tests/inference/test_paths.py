@@ -36,17 +36,19 @@ def test_what_nobody_can_walk_is_refused(paths: tuple[FloorPath, ...], said: str
 
 
 def test_a_sentence_with_a_path_is_made_as_a_scene_and_stays_at_its_end_unless_led_on() -> None:
-    for sentence, stays in (("A waves to B.", True), ("They hug.", False), ("A jumps.", False)):
+    walks = "A walks away from B."
+    for sentence, stays in (("A waves to B.", True), (walks, True), ("They hug.", False), ("A jumps.", False)):
         scene = as_scene(GenerateRequest(prompt=sentence, paths=(WAY,)))
         assert scene is not None
-        assert (len(scene.paths[0].points) == 3) is stays, sentence
-        assert scene.paths[0].points[:2] == GenerateRequest(prompt=sentence, paths=(WAY,)).paths[0].points
+        assert (len(scene.walks[0].points) > 2) is stays, sentence
+        assert scene.paths[0].points == GenerateRequest(prompt=sentence, paths=(WAY,)).paths[0].points
 
 
 def test_the_motion_follows_the_path() -> None:
-    request = GenerateRequest(prompt="A waves to B.", paths=(WAY,), seconds=4.0, steps=4)
+    """Also where the words would lead on: the path is the whole way."""
+    request = GenerateRequest(prompt="Two people walk.", paths=(WAY,), seconds=4.0, steps=4)
     duet = list(Engine().run(request))[-1].duets[0]
     places = duet.positions[0, :, 0][:, [0, 2]]
     for point in request.paths[0].points:
         assert np.linalg.norm(places[round(point.seconds * 30)] - [point.x, point.z]) < 0.1
-    assert np.linalg.norm(places[-1] - [1.0, -0.5]) < 0.15
+    assert np.linalg.norm(places[35:] - [1.0, -0.5], axis=1).max() < 0.2

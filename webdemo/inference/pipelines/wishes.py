@@ -69,7 +69,7 @@ def wishes(request: SceneRequest, window: Window, scene: Array, placement: Place
             positions = placement.to_network(np.asarray(pose.positions)[None])
             parts.append(KnownFrames(person, [frame - window.start + window.past], positions))
         _check_speeds(role, fixed)
-        for path in (path for path in request.paths if path.person == role):
+        for path in (path for path in request.walks if path.person == role):
             frames, places, headings, said = _walked(path, window, fixed, placement)
             kept = [i for i, frame in enumerate(frames) if frame not in inside]
             at = np.array(frames, dtype=int)[kept] - window.start + window.past

@@ -33,6 +33,8 @@ MOST_SECONDS = 180.0
 """Of a scene."""
 MOST_MADE = 360.0
 """Seconds of motion that one request makes, over all samples and tries."""
+_HELD_EVERY = 0.5
+"""Seconds between two moments at which a person who has walked a path is held to its end."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -224,6 +226,27 @@ class SceneRequest(SamplingRequest):
             take = Take.of(self.seed if beat.seed is None else beat.seed)
             scores.append(take.of_acts(beat.acts or plan.acts, known))
         return scores_of(scores)
+
+    @cached_property
+    def walks(self) -> tuple[FloorPath, ...]:
+        """The paths as they are walked: people stay where theirs ends until the words lead them on from there.
+
+        A way that the words name while a path is walked is that path.
+        """
+        if self.poses or self.loop or self.end is not None:
+            return self.paths
+        return tuple(self._stayed(path) for path in self.paths)
+
+    def _stayed(self, path: FloorPath) -> FloorPath:
+        last, edges = path.points[-1], [edge / FPS for edge in self.edges]
+        ended, rest = last.seconds or 0.0, edges[-1]
+        for score, (start, end) in reversed(list(zip(self.scores, pairwise(edges), strict=True))):
+            walked = {move.person for move in score.moves} if start < ended else set()
+            bound = score.joined or score.touch or score.strike or score.reaching
+            if end > ended and (bound or path.person in score.going - walked):
+                rest = start
+        held = np.arange(ended + _HELD_EVERY, rest - 1 / FPS, _HELD_EVERY)
+        return replace(path, points=(*path.points, *(replace(last, seconds=float(t)) for t in held)))
 
     @property
     def num_frames(self) -> int:

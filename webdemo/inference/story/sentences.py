@@ -7,18 +7,15 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from acts import Act, Plan
 from acts.captions import sentence
 from acts.lexicon import Entry, Lexicon, is_fixture, lexicon
 from acts.staging.act_kinds import hits, reaches_low
-from acts.staging.score import LOWERED, Score
+from acts.staging.score import LOWERED
 from acts.staging.stage import score_of
-from motion import FPS, InputError
+from motion import InputError
 from webdemo.inference import methods
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.requests.paths import FloorPath
 from webdemo.inference.requests.plans import plan_of_words
 from webdemo.inference.requests.sampling import MAX_PROMPT
 from webdemo.inference.run import CancelToken
@@ -292,7 +289,7 @@ def as_scene(request: GenerateRequest) -> SceneRequest | None:
         beats = _filling(request.seconds, beats, plans)
     return SceneRequest(
         beats=beats,
-        paths=_staying(request.paths, beats),
+        paths=request.paths,
         planned=request.planned,
         strictness=request.strictness,
         plan=replace(request.plan, acts=plans),
@@ -305,27 +302,6 @@ def _filling(seconds: float, beats: Sequence[Beat], plans: Sequence[Plan]) -> tu
     lengths = [seconds_of_acts(beat.acts or plan.acts) for beat, plan in zip(beats, plans, strict=True)]
     filled = zip(beats, filling(seconds, lengths), strict=True)
     return tuple(replace(beat, seconds=max(length, SHORTEST)) for beat, length in filled)
-
-
-def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPath, ...]:
-    """The timed paths of people, who stay where their path ends unless the words lead them on from there."""
-    ends = np.cumsum([beat.length for beat in beats])
-    staying = []
-    for path in paths:
-        last = path.points[-1]
-        led = any(
-            end > (last.seconds or 0.0) and _leads(score_of(beat.acts), path.person)
-            for beat, end in zip(beats, ends, strict=True)
-        )
-        rest = float(ends[-1]) - 1 / FPS
-        stays = not led and rest > (last.seconds or 0.0) + 1
-        staying.append(replace(path, points=(*path.points, replace(last, seconds=rest))) if stays else path)
-    return tuple(staying)
-
-
-def _leads(score: Score, person: str) -> bool:
-    """True if a person of a beat goes somewhere, or has to do with the other's body."""
-    return person in score.going or score.joined or bool(score.touch or score.strike or score.reaching)
 
 
 def _beats(request: GenerateRequest, script: Plan) -> tuple[Beat, ...]:
