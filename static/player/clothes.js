@@ -1,14 +1,23 @@
 // What the people of a player wear: the bodies that ship, as each motion says, and lighter ones where people are many
 // and small. They stay skeletons where no body can be had.
 
+import { UNSAID } from "./decode.js";
 import { loadBody } from "./loader.js";
 import { FIGURES, keepFigure } from "./remember.js";
+
+const onPhone = () => matchMedia("(max-width: 700px)").matches;
+const fileOf = (look, light) => (light ? `${look}-small` : look);
+
+/** Fetches what people wear whose looks nobody has said. */
+export function warmBodies() {
+  for (const look of UNSAID) loadBody(fileOf(look, onPhone()));
+}
 
 export class Clothes {
   constructor(player) {
     this.player = player;
     this.bodies = new Map(); // those that ship and are here, by the names of their files
-    this.phone = matchMedia("(max-width: 700px)").matches;
+    this.phone = onPhone();
   }
 
   /** What somebody wears whose looks have this name; null while it is not here. */
@@ -17,7 +26,7 @@ export class Clothes {
   }
 
   file(look) {
-    return this.light ? `${look}-small` : look;
+    return fileOf(look, this.light);
   }
 
   /** Whether people are seen small: on a phone, or many at a time. */

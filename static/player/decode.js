@@ -48,7 +48,7 @@ export function poseAt(motion, frame) {
   return pose;
 }
 
-const UNSAID = ["man", "woman"]; // looks, motion/looks.py
+export const UNSAID = ["man", "woman"]; // looks, motion/looks.py
 
 const unpackSample = (sample) => ({
   ...sample,

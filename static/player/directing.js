@@ -1,7 +1,7 @@
 // What a visitor may change while somebody keeps it: `director` is such as a story or the reading of a prompt. Of these it
 // has what it can keep:
 //   posesAt(frame): each person's kept pose in world axes, or null; keepPoses(frame, [{ person: "a" or "b", positions }])
-//   paths: [{ person, points }] of the next run; keepPath(person, points); drawn(), after a path was drawn by hand
+//   paths: [{ person, points }] of the next run; keepPath(person, points)
 
 import { toScene } from "./decode.js";
 import { Drawing } from "./paths/drawing.js";

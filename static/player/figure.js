@@ -12,11 +12,14 @@ const GHOST_BEHIND = 0.25; // metres away from the eye, so that they never cover
 const BODY_BEFORE = 0.25; // metres towards the eye, so that a skeleton is seen over the body around it
 const INK = 0.45; // of black, in limbs on a body of the same hue
 const GHOSTS = 5;
+const SIDES = 12; // of a ball's disc
+const ROUND = Array.from({ length: SIDES + 1 }, (_, i) => [Math.cos((2 * Math.PI * i) / SIDES), Math.sin((2 * Math.PI * i) / SIDES)]);
 
 /** Turns metres at a point into CSS pixels for the present view. */
 export class Lens {
-  constructor({ eye, center }, heightPx) {
+  constructor({ eye, center, matrix }, heightPx) {
     this.eye = eye;
+    [this.right, this.up] = [0, 1].map((row) => [matrix[row], matrix[4 + row], matrix[8 + row]]);
     this.forward = unit(sub(center, eye));
     this.pxAtOneMetre = heightPx / 2 / Math.tan(FIELD_OF_VIEW / 2);
   }
@@ -27,6 +30,11 @@ export class Lens {
 
   pixels(metres, p) {
     return (metres * this.pxAtOneMetre) / this.depth(p);
+  }
+
+  /** And back again. */
+  metres(pixels, p) {
+    return (pixels * this.depth(p)) / this.pxAtOneMetre;
   }
 
   /** The point moved away from the eye along its own ray; its place in the picture stays. */
@@ -54,42 +62,49 @@ export const ahead = (points, lens) => points.map((p) => lens.behind(p, -Math.mi
 export const inked = (limbs) =>
   Object.fromEntries(Object.entries(limbs).map(([side, color]) => [side, mix(color, [0, 0, 0], INK)]));
 
-/** Lines for one person: points, colours and widths of a layer. */
-export function bones(points, skeleton, colors, lens, wide = 1) {
+/** Lines for people, each { points, limbs } with the limbs' colours, or { points, color, width } for all: a layer. */
+export function bones(people, skeleton, lens, wide = 1) {
   const out = { points: [], colors: [], sizes: [] };
-  for (const { from, to, side } of skeleton.bones) {
-    const [a, b, color] = [points[from], points[to], colors[side]];
-    const width = Math.max(lens.pixels(2 * wide * BONE, middle(a, b)), LEAST_PX);
-    out.points.push(a, b, GAP);
-    out.colors.push(color, color, color);
-    out.sizes.push(width, width, width);
+  for (const { points, limbs, ...given } of people) {
+    for (const { from, to, side } of skeleton.bones) {
+      const [a, b, color] = [points[from], points[to], given.color ?? limbs[side]];
+      const width = given.width ?? Math.max(lens.pixels(2 * wide * BONE, middle(a, b)), LEAST_PX);
+      out.points.push(a, b, GAP);
+      out.colors.push(color, color, color);
+      out.sizes.push(width, width, width);
+    }
   }
   return out;
 }
 
-/** Balls at the joints. */
-export function joints(points, skeleton, colors, lens, wide = 1) {
-  return {
-    points,
-    colors: skeleton.joints.map(({ side }) => colors[side]),
-    sizes: points.map((p) => Math.max(lens.pixels(2 * wide * JOINT, p), 2 * LEAST_PX)),
-  };
+/** Balls at their joints. */
+export const joints = (people, skeleton, lens, scale, wide = 1) => balls(people.flatMap(({ points, limbs }) => (
+  points.map((p, joint) => ({ p, color: limbs[skeleton.joints[joint].side], radius: Math.max(wide * JOINT, lens.metres(LEAST_PX, p)) }))
+)), lens, scale);
+
+/** Discs that face the eye, at points `p` with a radius in metres: triangles of a layer. */
+export function balls(all, lens, scale) {
+  const positions = new Float32Array(9 * SIDES * all.length);
+  const colors = new Float32Array(12 * SIDES * all.length);
+  let corner = 0;
+  for (const { p, color, radius } of all) {
+    for (let side = 0; side < SIDES; side++) {
+      for (const [x, y] of [[0, 0], ROUND[side], ROUND[side + 1]]) {
+        for (let i = 0; i < 3; i++) positions[3 * corner + i] = scale[i] * (p[i] + radius * (x * lens.right[i] + y * lens.up[i]));
+        colors.set(color, 4 * corner);
+        colors[4 * corner++ + 3] = 1;
+      }
+    }
+  }
+  return { positions, colors };
 }
 
 /** Pale figures: moments along the way, in which somebody may be missing, and what really happened. */
 export function ghosts(moments, real, skeleton, theme, lens) {
-  const out = { points: [], colors: [], sizes: [] };
-  const add = (points, color, width) => {
-    const back = points.map((p) => lens.behind(p, GHOST_BEHIND));
-    for (const bone of skeleton.bones) {
-      out.points.push(back[bone.from], back[bone.to], GAP);
-      out.colors.push(color, color, color);
-      out.sizes.push(width, width, width);
-    }
-  };
-  for (const pose of moments) pose.forEach((points, p) => points && add(points, mix(theme.background, theme.people[p].middle, 0.38), 3));
-  for (const points of real) add(points, theme.ghost, 5);
-  return out;
+  const back = (points, color, width) => ({ points: points.map((p) => lens.behind(p, GHOST_BEHIND)), color, width });
+  const pale = theme.people.map(({ middle: hue }) => mix(theme.background, hue, 0.38));
+  const along = moments.flatMap((pose) => pose.flatMap((points, p) => (points ? [back(points, pale[p], 3)] : [])));
+  return bones([...along, ...real.map((points) => back(points, theme.ghost, 5))], skeleton, lens);
 }
 
 /** Frames of the onion skin: evenly spaced, both ends in. */

@@ -1,6 +1,8 @@
 // Entry point: gives an element of the page a player and keeps it in step with its Python side.
 
+import { warmBodies } from "./clothes.js";
 import { loadPlotly, loadStyles } from "./loader.js";
+import { warmScene } from "./pane.js";
 import { loops, Player } from "./player.js";
 import { say } from "../texts.js";
 
@@ -32,6 +34,13 @@ const hooks = {
 };
 
 const OURS = { plotly: "../plotly/plotly-gl3d.min.js", styles: "player.css", empty: "player.empty" };
+
+/** Loads what players need and makes a scene for the first of them, before the page has a place for it. */
+export async function warm() {
+  loadStyles(address(OURS.styles));
+  warmBodies();
+  warmScene(await loadPlotly(address(OURS.plotly)));
+}
 
 /**
  * `element` holds player.html; `props` are the component's, watched by `watch`. A page whose files lie elsewhere gives the

@@ -5,12 +5,20 @@ import { poseAt } from "./decode.js";
 import * as figure from "./figure.js";
 import { Ground } from "./ground.js";
 import { shapesAt } from "./hands.js";
+import { node } from "./node.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
 import { Labels, project } from "./overlay.js";
 import { Scene } from "./scene.js";
 
 const ABOVE_HEAD = 0.2; // metres
 const WIDE = 3.5; // times, skeletons that stand for bodies that cannot be had
+
+let spare = null; // a promise of a scene that no pane has yet
+
+/** Makes a scene ahead, for the first pane that asks for one. */
+export function warmScene(Plotly) {
+  spare = new Scene(node("div", "pdd-gl"), Plotly).open([1, 1, 1]);
+}
 
 export class Pane {
   /** `wear` gives the body of a look, or null while there is none. */
@@ -39,7 +47,13 @@ export class Pane {
   }
 
   async open(background, Plotly) {
-    this.scene = await new Scene(this.find(".pdd-gl"), Plotly).open(background);
+    const host = this.find(".pdd-gl");
+    const ready = spare;
+    spare = null;
+    this.scene = await (ready ?? new Scene(host, Plotly).open(background));
+    if (!ready) return;
+    host.replaceWith(this.scene.host);
+    this.scene.setBackground(background);
   }
 
   /** Another motion to show, or null; `caption` names a cell of a grid that is seen large. */
@@ -87,14 +101,15 @@ export class Pane {
       else this.drop(["things"]);
       const colors = given ? theme.given : theme.people;
       const wide = bodies.length || show.figure === "skeleton" ? 1 : WIDE;
-      const thin = show.figure !== "body" || !bodies.length ? pose : [];
-      thin.forEach((own, person) => {
-        const points = bodies.length ? figure.ahead(own, lens) : own;
-        const limbs = bodies.length ? figure.inked(colors[person]) : colors[person];
-        scene.set(`bones${"AB"[person]}`, figure.bones(points, skeleton, limbs, lens, wide));
-        scene.set(`joints${"AB"[person]}`, figure.joints(points, skeleton, limbs, lens, wide));
-      });
-      this.drop(["bonesA", "jointsA", "bonesB", "jointsB"].slice(2 * thin.length));
+      const thin = (show.figure !== "body" || !bodies.length ? pose : []).map((points, person) => (
+        bodies.length
+          ? { points: figure.ahead(points, lens), limbs: figure.inked(colors[person]) }
+          : { points, limbs: colors[person] }
+      ));
+      if (thin.length) {
+        scene.set("bones", figure.bones(thin, skeleton, lens, wide));
+        scene.setTriangles("joints", figure.joints(thin, skeleton, lens, scene.scale, wide));
+      } else this.drop(["bones", "joints"]);
       this.paintShadow(pose, skeleton, bodies, things, theme);
       this.paintGhosts(lens, { theme, clock, skeleton, show, pinned });
       this.spots = pose.map((points) => points.map((p) => project(p, matrix, width, height, FIELD_OF_VIEW)));

@@ -13,16 +13,19 @@ import { simplify } from "./shaders.js";
 const HALF = 60; // metres; a box this wide around the origin makes scene units metres and clips nothing
 const KINDS = {
   ground: "mesh", floor: "lines", bodyA: "mesh", bodyB: "mesh", things: "mesh", ghosts: "lines", paths: "lines",
-  bonesA: "lines", bonesB: "lines", jointsA: "points", jointsB: "points",
+  bones: "lines", joints: "mesh",
 };
-const HOLDERS = { lines: "linePlot", points: "scatterPlot", mesh: "mesh" }; // plotly's names for the drawing objects
+const HOLDERS = { lines: "linePlot", mesh: "mesh" }; // plotly's names for the drawing objects
 const NOWHERE = [[NaN, NaN, NaN], [NaN, NaN, NaN], [NaN, NaN, NaN]];
-const FLAT = { ambient: 1, diffuse: 0, specular: 0, roughness: 1, fresnel: 0 };
 const MOVING_RATIO = 1;
 const STILL_RATIO = 2;
 const LIVE_RATIO = 0.75;
 
-const axis = { visible: false, range: [-HALF, HALF], showspikes: false, tickmode: "array", tickvals: [] };
+// An axis that is not visible would be named "x", "y" or "z", and plotly would trace each letter's outline, half a second.
+const axis = {
+  title: { text: "" }, range: [-HALF, HALF], showspikes: false, tickmode: "array", tickvals: [], showticklabels: false,
+  showgrid: false, zeroline: false, showline: false, showbackground: false,
+};
 
 export class Scene {
   constructor(host, Plotly) {
@@ -40,8 +43,7 @@ export class Scene {
     const color = css(background);
     const make = {
       lines: () => ({ ...common, type: "scatter3d", mode: "lines", line: { width: 4, color } }),
-      points: () => ({ ...common, type: "scatter3d", mode: "markers", marker: { size: 1, color, line: { width: 0 } } }),
-      mesh: () => ({ ...common, type: "mesh3d", i: [0], j: [1], k: [2], color, lighting: FLAT, flatshading: false }),
+      mesh: () => ({ ...common, type: "mesh3d", i: [0], j: [1], k: [2], color }),
     };
     const traces = this.names.map((name) => ({ name, ...make[KINDS[name]]() }));
     const layout = {
@@ -116,24 +118,18 @@ export class Scene {
   }
 
   /**
-   * New content for a layer: `points` [x, y, z] each, NaN breaks a line; `colors` one [r, g, b] or one
-   * a point; `sizes` in CSS pixels, one or one a point (lines: the width of the segment that starts
-   * there). Meshes take theirs by setTriangles().
+   * New content for a layer of lines: `points` [x, y, z] each, NaN breaks a line; `colors` one [r, g, b] or one a point;
+   * `sizes` in CSS pixels, one or one a point, the width of the segment that starts there. Meshes take theirs by
+   * setTriangles().
    */
   set(name, layer) {
     const { points, colors = [0, 0, 0], sizes = 1 } = layer;
     this.layers.set(name, layer);
     const scale = this.inside.dataScale;
     const position = points.map((p) => [p[0] * scale[0], p[1] * scale[1], p[2] * scale[2]]);
-    const object = this.objects[name];
-    if (KINDS[name] === "lines") {
-      // gl-line3d halves the width it is given
-      const lineWidth = Array.isArray(sizes) ? sizes.map((s) => 2 * s) : 2 * sizes;
-      object.update({ position, color: colors, lineWidth, connectGaps: false });
-    } else if (KINDS[name] === "points") {
-      const size = sizes.map?.((s) => s / discWidth()) ?? sizes / discWidth();
-      object.update({ position, color: colors, size, glyph: "●", lineWidth: 0, orthographic: true, opacity: 1, project: [false, false, false] });
-    } else object.update({ positions: position, cells: [[0, 1, 2]], vertexColors: points.map(() => [...colors, 1]), vertexNormals: points.map(() => [0, 0, 1]), ...FLAT });
+    // gl-line3d halves the width it is given
+    const lineWidth = Array.isArray(sizes) ? sizes.map((s) => 2 * s) : 2 * sizes;
+    this.objects[name].update({ position, color: colors, lineWidth, connectGaps: false });
   }
 
   /**
@@ -151,7 +147,6 @@ export class Scene {
       mesh.triangleNormals.update(new Float32Array(3 * corners).fill(1)); // of no use, but none may be nothing
       mesh.triangleUVs.update(places ?? new Float32Array(2 * corners));
       mesh.triangleIds.update(new Uint32Array(corners));
-      Object.assign(mesh, { ambientLight: 1, diffuseLight: 0, specularLight: 0 });
       mesh.triangleCount = corners / 3;
     } else if (places) mesh.triangleUVs.update(places);
     mesh.hasAlpha = false;
@@ -179,8 +174,10 @@ export class Scene {
   }
 
   hide(name) {
-    this.set(name, { points: NOWHERE, hidden: true });
-    if (KINDS[name] === "mesh") Object.assign(this.objects[name], { triangleCount: 0, hasAlpha: false });
+    const nothing = { points: NOWHERE, hidden: true };
+    if (KINDS[name] === "lines") return this.set(name, nothing);
+    this.layers.set(name, nothing);
+    Object.assign(this.objects[name], { triangleCount: 0, hasAlpha: false });
   }
 
   draw() {
@@ -197,7 +194,11 @@ export class Scene {
   async resize() {
     await this.Plotly.Plots.resize(this.host);
     if (!this.objects) return;
-    for (const [name, layer] of this.layers) layer.positions ? this.setTriangles(name, layer) : this.set(name, layer);
+    for (const [name, layer] of this.layers) {
+      if (layer.hidden) this.hide(name);
+      else if (layer.positions) this.setTriangles(name, layer);
+      else this.set(name, layer);
+    }
     this.draw();
   }
 
@@ -259,18 +260,6 @@ function withoutMultisampling() {
   return () => {
     HTMLCanvasElement.prototype.getContext = original;
   };
-}
-
-/** Ems that the glyph "●" is wide, by which gl-scatter3d counts sizes; each machine's font has its own. */
-let disc = null;
-function discWidth() {
-  if (disc === null) {
-    const pen = document.createElement("canvas").getContext("2d");
-    pen.font = "100px normal"; // the font that gl-scatter3d draws with
-    const box = pen.measureText("●");
-    disc = (box.actualBoundingBoxLeft + box.actualBoundingBoxRight) / 100 || 0.44;
-  }
-  return disc;
 }
 
 /** Whether WebGL runs on the processor, as on machines without a graphics card and in tests. */

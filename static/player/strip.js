@@ -3,8 +3,6 @@
 import { node } from "./node.js";
 import { say } from "../texts.js";
 
-const CURVES = { Apart: "player.apart", Hands: "player.hands" }; // what the server calls its curves
-
 const TOO_MANY_TICKS = 60;
 
 export class Strip {
@@ -34,7 +32,7 @@ export class Strip {
     this.ticks.replaceChildren();
     if (!sample) return;
     sample.curves.forEach((curve, i) => {
-      const name = node("dt", "", curve.label in CURVES ? say(CURVES[curve.label]) : curve.label);
+      const name = node("dt", "", curve.label);
       name.style.setProperty("--key", colors[i % colors.length]);
       const value = node("dd");
       this.values.append(name, value);

@@ -100,6 +100,7 @@ class View {
 
   typed(text) {
     if (!this.asking.typed(text)) return;
+    clearTimeout(this.making);
     this.fold(false);
     if (this.edited) this.note = say("reading.dropped");
     this.edited = false;
@@ -155,10 +156,11 @@ class View {
   /** Makes the motion on the stage again where it is that of this text: soon, and once nothing else is made or drawn. */
   makeAgain() {
     clearTimeout(this.making);
-    if (!this.checks || this.checks.text !== this.asking.text) return;
+    const { player } = this.paths;
+    if (![this.checks?.text, player?.data?.title].includes(this.asking.text)) return;
     const go = this.root.closest(".pd-ask").querySelector("button.pd-run");
     this.making = setTimeout(() => {
-      const busy = go.disabled || this.paths.player?.directing.drawing?.held;
+      const busy = go.disabled || player.directing.drawing.held;
       busy ? this.makeAgain() : go.click();
     }, SOON);
   }

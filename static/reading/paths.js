@@ -5,12 +5,12 @@ import { chips } from "../player/paths/walks.js";
 import { path } from "../story/edits.js";
 
 export class Paths {
-  /** `changed` is called when the paths are others, and `drawn` when a visitor has drawn one by hand. */
-  constructor(root, changed, drawn) {
+  /** `changed` is called when the paths are others, and `again` when a visitor has drawn one or taken one away. */
+  constructor(root, changed, again) {
     this.root = root;
     this.list = root.parentElement.querySelector(".pdr-paths");
     this.changed = changed;
-    this.drawn = drawn;
+    this.again = again;
     this.paths = [];
     this.leaving = new AbortController();
     document.addEventListener("pdd-here", () => this.meet(), { signal: this.leaving.signal });
@@ -29,6 +29,7 @@ export class Paths {
 
   keepPath(person, points) {
     this.open(path({ paths: this.paths }, person, points).paths);
+    this.again();
   }
 
   /** Shows other paths, such as those of a kept run. */

@@ -61,6 +61,7 @@ class Editor {
 
   keepPath(person, points) {
     this.edit(edits.path(this.story, person, points));
+    this.tell(say("story.walked"));
   }
 
   /** Goes back to the story before, or forward again. */

@@ -85,11 +85,19 @@ def test_a_drawn_path_is_sent_with_the_next_run(drawing: Page, server: Any) -> N
     (sent,) = generated(page, server, "A waves to B.").paths
     assert sent.person == "a"
     assert [[point.x, point.z] for point in sent.points] == [point[1:] for point in path["points"]]
-    # It stays for the run after, until it is taken away.
+    # It stays for the run after, until it is taken away: then the motion is made again without it.
     expect(chips(page)).to_have_count(1)
+    expect(page.locator("button#generate")).to_be_enabled()
+    made = len(server.engine.requests)
     chips(page).get_by_role("button").click()
     expect(chips(page)).to_have_count(0)
-    assert generated(page, server, "B waves to A.").paths == ()
+    for _ in range(300):
+        if len(server.engine.requests) > made:
+            break
+        page.wait_for_timeout(100)
+    (again,) = server.engine.requests[made:]
+    assert (again.prompt, again.paths) == ("A waves to B.", ())
+    status(page, "done")
 
 
 def test_keys_draw_as_well(drawing: Page) -> None:

@@ -47,6 +47,11 @@ def test_little_is_in_sight_and_the_actions_on_a_result_are(
 ) -> None:
     page, sizes, seconds = opened(lab, open_page, width, height)
     loaded = sum(sizes)
+    asked = page.evaluate("performance.getEntriesByType('resource').map(({ name }) => name.split('/').at(-1))")
+    part = next(place for place, name in enumerate(asked) if name.startswith("HTML-"))
+    assert max(map(asked.index, ("plotly-gl3d.min.js", "scene.js"))) < part, "loads while Gradio begins"
+    plain = page.evaluate("Object.getPrototypeOf(window.gradio_config.dependencies[0]) === Object.prototype")
+    assert not plain, "Svelte would watch each event's parts"
     live(page)
     buttons = page.evaluate(BUTTONS)
     column = page.evaluate(COLUMN)

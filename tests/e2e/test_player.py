@@ -42,13 +42,15 @@ def test_shows_what_was_sent(player):
 
 
 def test_balls_are_as_wide_as_asked(player):
-    """In whatever font the machine draws them: joints round the ends of bones only where both agree."""
     page = player()
     pause(page)
-    ball = """() => {
-        const { scene, orbit } = window.__pasdedeux.player;
+    ball = """async () => {
+        const { scene, orbit, stage } = window.__pasdedeux.player;
+        const { balls, Lens } = await import("/player/figure.js");
+        const lens = new Lens(orbit.view(), stage.querySelector(".pdd-pane").clientHeight);
+        const p = orbit.view().center;
         for (const name of scene.names) scene.hide(name);
-        scene.set("jointsA", { points: [[...orbit.view().center]], colors: [1, 0, 0], sizes: [120] });
+        scene.setTriangles("joints", balls([{ p, color: [1, 0, 0], radius: lens.metres(60, p) }], lens, scene.scale));
         scene.draw();
     }"""
     for _ in range(20):  # the player may draw its frame once more, after a pause or a change of size
@@ -186,7 +188,7 @@ def test_meshes_are_drawn_by_shaders_of_our_own(player):
             return gl.getProgramParameter(gl.getParameter(gl.CURRENT_PROGRAM), gl.LINK_STATUS);
         });
     }""")
-    assert linked == [True] * 4, "the ground, two bodies and things"
+    assert linked == [True] * 5, "the ground, two bodies, things and joints"
     assert page.evaluate("window.__pasdedeux.player.scene.gl.gl.getError()") == 0
 
 

@@ -30,7 +30,7 @@ def shown_layers(page) -> dict[str, dict[str, float]]:
 
 
 def bones_drawn(page) -> bool:
-    return page.evaluate("!window.__pasdedeux.player.scene.layers.get('bonesA').hidden")
+    return page.evaluate("!window.__pasdedeux.player.scene.layers.get('bones').hidden")
 
 
 @pytest.mark.parametrize(("button", "width"), [("load", 390), ("child", 1280)])

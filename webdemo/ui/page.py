@@ -27,7 +27,7 @@ from webdemo.ui.text.texts import say
 
 from .api import ENDPOINTS
 from .context import PageContext
-from .frames import let_rest
+from .frames import begin_early
 from .history import HistoryLike
 from .runs import EngineLike, HealthLike
 from .theme import HEAD, style_sheet, theme
@@ -50,7 +50,6 @@ _BEGIN_WITH = """(own, first) => ({ __type__: "update", ...(own ? {} : { value: 
 """JavaScript that lets an empty player begin with what another shows, so that the page carries the example once."""
 _OF_GRADIO = ("common.upload", "upload_text.drop_file", "upload_text.click_to_upload")
 """Keys of Gradio's texts that are others here."""
-_HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
 _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""
 _LOOK = 0.02
@@ -84,7 +83,7 @@ def build_page(page: PageContext) -> gr.Blocks:
     def loading() -> Iterator[str]:
         yield from watch_loading(page.engine, page.health)
 
-    let_rest()
+    begin_early()
     with _Page(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
         for endpoint in ENDPOINTS:
             endpoint(page).publish()
@@ -99,7 +98,7 @@ def build_page(page: PageContext) -> gr.Blocks:
 def _build_header(history: HistoryLike) -> gr.HTML:
     """The title, the search and the mark that says whether the model is ready, which is returned."""
     with gr.Row(elem_classes="pd-header", equal_height=True):
-        gr.HTML(_HEADER)
+        gr.HTML('<div class="pd-brand"><h1>Pas de Deux</h1></div>')
         finder = Finder(elem_id="finder")
         mark = gr.HTML(model_state("loading"), elem_id="model-state")
     finder.wire(history, **QUIET)

@@ -14,6 +14,7 @@ from functools import cache
 from jinja2 import Environment, FileSystemLoader
 
 from webdemo.inference.methods import label_of
+from webdemo.ui.components.notebook import made_by
 from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.history import Entry
 from webdemo.ui.text.texts import TEXTS, TEXTS_JS, say
@@ -47,11 +48,8 @@ class Place:
 
 def caption(entry: Entry) -> str:
     """One line on how a result was made: by which method, how long, and its seed."""
-    asked = entry.request
-    parts = [label_of(str(asked["model"]))] if asked.get("model") else []
-    parts += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
-    parts += [f"seed {asked['seed']}"] if isinstance(asked.get("seed"), int) else []
-    return " · ".join(parts)
+    model = entry.request.get("model")
+    return " · ".join(made_by(label_of(str(model)) if model else "", entry.request))
 
 
 def player_html(entry: Entry, payload: Payload, place: Place, *, until: float) -> str:

@@ -124,10 +124,8 @@ export class Drawing {
     if (!held || event.pointerId !== held.id) return;
     this.held = null;
     if (held.end) this.further(held, LEAST);
-    if (held.points.length > 1) {
-      this.keep(held.person, held.points);
-      this.director.drawn?.();
-    } else this.say();
+    if (held.points.length > 1) this.keep(held.person, held.points);
+    else this.say();
     this.player.wake();
   }
 

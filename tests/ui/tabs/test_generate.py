@@ -47,8 +47,8 @@ def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
     unchosen = run(tab, model="bigraphdiff", class_name=None)[-1]
     assert "No class is chosen" in unchosen["line"] and "record" not in unchosen
     for way, sentence in (("intergen", True), ("bigraphdiff", False)):
-        *shown, guidance, steps, pace, planned, strictness, tries = tab.asked_by(way)
-        assert steps["value"] == pace["value"] == (FAST if sentence else FAITHFUL)
+        *shown, guidance, steps, planned, strictness, tries = tab.asked_by(way)
+        assert steps["value"] == (FAST if sentence else FAITHFUL)
         assert [update["visible"] for update in (*shown, planned, strictness, tries)] == [
             sentence,
             not sentence,
@@ -159,17 +159,6 @@ def test_words_become_paths_unless_that_is_switched_off(tab: GenerateTab) -> Non
         assert last["record"].result.manifest["request"]["planned"] is planned
         assert f"Plan from the words</dt><dd>{'on' if planned else 'off'}<" in last["readouts"]
         assert ("fixes 60 %" if planned else "The network makes all") in last["laid"]
-
-
-def test_the_switch_of_steps_shows_how_a_kept_run_was_made(tab: GenerateTab) -> None:
-    result = result_of(tab).result
-    for steps, choice in ((FAST, FAST), (FAITHFUL, FAITHFUL), (12, None)):
-        asked = {**result.manifest["request"], "steps": steps}
-        entry = Entry(id="x", kind="generate", title="t", state="done", request=asked)
-        found = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={"steps": steps})))
-        form = tab.sampling
-        assert found[form.pace]["value"] == choice and found[form.steps]["value"] == steps
-    assert form.steps.value == form.pace.value == FAST
 
 
 @pytest.mark.parametrize(

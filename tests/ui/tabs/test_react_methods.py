@@ -38,8 +38,8 @@ def test_a_method_is_a_model_and_a_mode(
     run(tab, source, method=method)
     asked = tab.page.engine.requests[-1]
     assert (asked.model, asked.mode) == (model, mode)
-    role, steps_slider, _, damping, *_ = tab.fit_method(method)
-    assert steps_slider["value"] == steps
+    role, steps_slider, pace, _, damping, *_ = tab.fit_method(method)
+    assert steps_slider["value"] == steps and pace["interactive"] == steps_slider["interactive"]
     assert role["interactive"] is (model == "intergen")
     assert damping["interactive"] is (mode == "offline")
 

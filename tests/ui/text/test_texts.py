@@ -29,6 +29,7 @@ def _literals(path: Path) -> set[str]:
 def test_every_text_is_used() -> None:
     literals = set().union(*map(_literals, (*PYTHON, *MODULES)))
     literals |= {f"{key}_info" for key in literals}  # a slider takes it by itself
+    literals |= {f"{kind}.{key}" for kind in ("files", "settings", "stage") for key in literals}  # named by their key
     assert [key for key in texts() if key not in literals] == []
 
 

@@ -36,25 +36,14 @@ _PLAIN = ("png", "json", "csv")
 ALL = "all"
 """The key of everything in one archive."""
 
-KINDS = {
-    "glb": "Animated .glb",
-    "bvh": "BVH pair",
-    "usda": "Animated .usda",
-    "npz": "Motion .npz",
-    "smpl.npz": "SMPL .npz",
-    "csv": "Read-outs .csv",
-    "json": "Manifest",
-    "png": "Contact sheet",
-    ALL: "All files .zip",
-}
-"""What stands on the button of a kind of file, by its suffix without the dot, which programs call it by as well."""
 PURPOSES = {
     "For Blender": ("glb", "bvh", "usda"),
     "Numbers": ("npz", "smpl.npz", "csv", "json"),
     "Pictures and film": ("png",),
     "Everything": (ALL,),
 }
-"""What files are for, the likeliest first, and their kinds."""
+"""What files are for, the likeliest first, and their kinds: suffixes without the dot, by which programs call them."""
+KINDS = tuple(kind for kinds in PURPOSES.values() for kind in kinds)
 
 
 @dataclass

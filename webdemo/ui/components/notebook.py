@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -11,7 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 from motion import InputError
 from webdemo.inference.methods import label_of
 from webdemo.ui.history import Entry, Found, Search
-from webdemo.ui.text.words import method_label, settings
+from webdemo.ui.text.words import counted, method_label, settings
 
 from .accepts import Finite, Flag, Sent, Text
 from .part import STATIC, Part
@@ -149,13 +150,18 @@ def _card(entry: Entry) -> dict[str, Any]:
     }
 
 
+def made_by(label: str, asked: Mapping[str, Any]) -> list[str]:
+    """The method of a request, by its label, the length and the seed, as far as they are known."""
+    parts = [label] if label else []
+    parts += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
+    return parts + ([f"seed {asked['seed']}"] if isinstance(asked.get("seed"), int) else [])
+
+
 def facts(entry: Entry) -> str:
     """One line for a run: by which method, how long, its seed, when, and marks."""
     asked = entry.request
-    parts = [label] if (label := method_label(asked)) else []
-    parts += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
-    parts += [f"seed {asked['seed']}"] if "seed" in asked else []
+    parts = made_by(method_label(asked), asked)
     parts.append(time.strftime("%d %b %Y %H:%M", time.localtime(entry.created)))
     parts += [_MARKS[entry.state]] if entry.state in _MARKS else []
-    parts += [f"{entry.links} link{'s' if entry.links > 1 else ''}"] if entry.links else []
+    parts += [counted(entry.links, "link")] if entry.links else []
     return " · ".join(parts)

@@ -15,8 +15,6 @@ from webdemo.view.payload import Curve, Payload, build_payload, sample_payload
 
 from .player import result_payload, with_shown_roles
 
-_NO_TRUTH = "The recording ends here, so there is nothing to compare with."
-
 
 def payload_of(result: Result, *, title: str = "") -> Payload:
     """The player's value for any result."""
@@ -85,7 +83,7 @@ def error_lines(*results: PredictResult) -> list[str]:
     lines = []
     for result in results:
         if not result.error:
-            lines.append(_NO_TRUTH)
+            lines.append("The recording ends here, so there is nothing to compare with.")
             continue
         error, fps = np.asarray(result.error), result.duets[0].fps
         line = (

@@ -13,7 +13,7 @@ from motion import InputError
 from webdemo.inference.story import Beat, Pose, SceneRequest, in_time, read_words, split_sentence
 from webdemo.inference.story.beats import seconds_of
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.words import error_line
+from webdemo.ui.text.words import counted, error_line
 
 from .story import story_fields, story_value, ticked
 
@@ -99,14 +99,14 @@ def said_of(text: str, story: Any) -> str:
 # ---- events
 
 
-def _counted(beats: Sequence[Beat]) -> str:
-    return f"{len(beats)} beats" if len(beats) != 1 else "1 beat"
-
-
 def lay_out(sentences: str, story: Any = None) -> Updates:
     """A sentence, and the line with its beats; what was ticked on the line stays so."""
     beats = split_sentence(sentences, in_time())
-    return sentences, story_value(beats, **ticked(story)), status(f"{_counted(beats)}: press Generate.")
+    return (
+        sentences,
+        story_value(beats, **ticked(story)),
+        status(f"{counted(len(beats), 'beat').capitalize()}: press Generate."),
+    )
 
 
 def edited(story: Any) -> Updates:
@@ -139,5 +139,5 @@ def written(text: str, story: Any) -> Updates:
         empty = not (text or "").strip()
         return unchanged if empty else (gr.skip(), status(error_line(error), tone="warning"), gr.skip())
     shown = {name: laid[name] for name in ("beats", "paths", "poses")}
-    line = status(f"{_counted(request.beats)}, {request.seconds:g} s: press Generate.")
+    line = status(f"{counted(len(request.beats), 'beat').capitalize()}, {request.seconds:g} s: press Generate.")
     return gr.update(laid=shown), line, gr.skip() if said == text else said

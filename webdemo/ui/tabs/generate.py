@@ -29,7 +29,7 @@ from webdemo.ui.text.texts import say
 from .grids import PLAN, SENTENCES, methods_kind
 from .job import JobTab
 from .results import PRESS, QUIET, Updates
-from .sampling import Sampling, pace_of
+from .sampling import Sampling
 
 
 def generate_choices() -> list[tuple[str, str]]:
@@ -59,9 +59,6 @@ def _class_in(sentence: str, label: str) -> str:
     return named
 
 
-_EDITED_UNPLANNED = "The plan was edited, but it is not followed: choose Plan from the words, or press Read again."
-
-
 class GenerateTab(JobTab):
     """Text, or a class → two people."""
 
@@ -80,7 +77,7 @@ class GenerateTab(JobTab):
             return GenerateRequest(**asked)
         plan = edited_plan(fields.get("acts"), str(fields.get("prompt") or ""))
         if plan is not None and not asked.get("planned", True):
-            raise InputError(_EDITED_UNPLANNED)
+            raise InputError("The edited plan is not followed: choose Plan from the words, or press Read again.")
         asked |= {"acts": plan, "paths": drawn_paths(fields.get("acts"))}
         return GenerateRequest(**asked)
 
@@ -139,7 +136,7 @@ class GenerateTab(JobTab):
         self.gallery.fill(self.prompt, self.seconds, self.sampling.seed, self.go, **QUIET)
         asked_by = {name: self.asked_by(name) for _, name in generate_choices()}
         form = self.sampling
-        fitted = [self.by_sentence, self.class_name, form.guidance, form.steps, form.pace, *self._of_sentences()]
+        fitted = [self.by_sentence, self.class_name, form.guidance, form.steps, *self._of_sentences()]
         self.model.input(None, inputs=self.model, outputs=fitted, js=looked_up(asked_by), **QUIET)
 
     def _ask(self) -> None:
@@ -196,7 +193,6 @@ class GenerateTab(JobTab):
             gr.update(visible=by_class),
             gr.update(value=chosen.default("guidance", GenerateRequest.guidance)),
             gr.update(value=chosen.steps),
-            gr.update(value=pace_of(chosen.steps)),
             *(by_sentence,) * 3,
         )
 

@@ -17,11 +17,11 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.history import Found, HistoryLike, Opened, Search
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import error_line, link_line, text
+from webdemo.ui.text.words import counted, error_line, link_line, text
 from webdemo.ui.visitor import Visitor, visitor
 
 from .grids import grid_shown
-from .history_files import FilesPanel, room_html, runs_line
+from .history_files import FilesPanel, room_html
 from .job import JobTab
 from .results import QUIET, Parts, Updates, said
 from .sharing import SharingPanel
@@ -122,11 +122,11 @@ class HistoryTab:
             elif action.act == "remove":
                 count, removed = self.history.remove(action.ids, owner), action.ids
                 line = status(
-                    f"Removed {runs_line(count)}, with {'its' if count == 1 else 'their'} links.", tone="done"
+                    f"Removed {counted(count, 'run')}, with {'its' if count == 1 else 'their'} links.", tone="done"
                 )
             elif action.act == "restore":
                 count, removed = self.history.restore(removed, owner), []
-                line = status(f"Brought {runs_line(count)} back.", tone="done")
+                line = status(f"Brought {counted(count, 'run')} back.", tone="done")
             elif action.act == "search":
                 saved = gr.skip()
             else:

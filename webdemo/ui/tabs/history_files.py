@@ -13,7 +13,7 @@ from webdemo.ui.history import HistoryLike, Usage
 from webdemo.ui.places import READING
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import text
+from webdemo.ui.text.words import counted, text
 from webdemo.ui.visitor import visitor
 
 from .results import QUIET, Parts, Updates, said
@@ -66,7 +66,7 @@ class FilesPanel:
         owner = visitor().owner
         file = self.page.shelf.folder(self.history.weight(owner, runs)) / "pas-de-deux-results.zip"
         count = self.history.export(owner, runs, file)
-        line = f"{runs_line(count).capitalize()} in one file of {file.stat().st_size / 2**20:.1f} MB."
+        line = f"{counted(count, 'run').capitalize()} in one file of {file.stat().st_size / 2**20:.1f} MB."
         return status(line, tone="done"), gr.update(value=str(file), visible=True)
 
     @said
@@ -84,12 +84,7 @@ class FilesPanel:
         who = visitor()
         with READING.place():
             count = self.history.take_in(who.owner, files, address=who.address)
-        return {self.line: status(f"Imported {runs_line(count)}.", tone="done")}
-
-
-def runs_line(count: int) -> str:
-    """A number of runs in words."""
-    return "one run" if count == 1 else f"{count} runs"
+        return {self.line: status(f"Imported {counted(count, 'run')}.", tone="done")}
 
 
 def room_html(usage: Usage) -> str:

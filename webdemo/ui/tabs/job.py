@@ -372,14 +372,12 @@ class JobTab(ABC):
         values = {name: known[name] for name in self._knobs() if name in known}
         return {
             **{self.controls[name]: gr.update(value=value) for name, value in values.items()},
-            **(self.sampling.opened(asked) if self.sampling else {}),
             **{self.outputs[name]: update for name, update in (shown | self.grids.opened(run)).items()},
         }
 
     def parts(self) -> list[gr.components.Component]:
         """Everything of the tab that :meth:`opened` may set."""
-        sampling = [self.sampling.pace] if self.sampling and self.sampling.pace else []
-        return [*self.outputs.values(), *self.controls.values(), *sampling, *self.restored()]
+        return [*self.outputs.values(), *self.controls.values(), *self.restored()]
 
     def _knobs(self) -> list[str]:
         """The names of the controls whose values are kept with a run."""

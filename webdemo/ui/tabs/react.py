@@ -101,7 +101,7 @@ class ReactTab(JobTab):
     def _fitted(self) -> list[Any]:
         """What :meth:`fit_method` updates."""
         form = self.sampling
-        return [self.role, form.steps, form.guidance, form.damping, self.prompt, self.about, self.stream]
+        return [self.role, form.steps, form.pace, form.guidance, form.damping, self.prompt, self.about, self.stream]
 
     def _ask(self) -> None:
         self.actor.build(self._live)
@@ -137,7 +137,7 @@ class ReactTab(JobTab):
 
     @staticmethod
     def fit_method(method: str) -> Updates:
-        """Updates of role, steps, guidance, damping, words, the line on a method and the button *Stream*.
+        """Updates of role, steps, pace, guidance, damping, words, the line on a method and the button *Stream*.
 
         What a method does not have cannot be set.
         """
@@ -148,6 +148,7 @@ class ReactTab(JobTab):
         return (
             gr.update(interactive=not forced, **forced),
             gr.update(value=chosen.method.steps, interactive="steps" not in fixed),
+            gr.update(interactive="steps" not in fixed),
             gr.update(interactive="guidance" not in fixed),
             gr.update(interactive="damping" not in fixed and chosen.mode == "offline"),
             gr.update(interactive=heard, label=_WORDS if heard else say("react.words_unused", method=chosen.label)),

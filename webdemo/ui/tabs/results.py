@@ -157,7 +157,7 @@ class Results:
 
     def _download(self, key: str) -> None:
         """The button of one kind of file."""
-        self._buttons[key] = self._saved(KINDS[key], key.replace(".", "-"), visible=offered(key))
+        self._buttons[key] = self._saved(say(f"files.{key}"), key.replace(".", "-"), visible=offered(key))
 
     @property
     def downloads(self) -> list[gr.DownloadButton]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import gradio as gr
@@ -24,14 +24,13 @@ _FOLLOWED = f"(steps) => [{FAST}, {FAITHFUL}].includes(steps) ? steps : null"
 
 
 class Sampling:
-    """Guidance, steps, damping and, for sentences, the plan, with what they did; in *More* samples, seed and tries.
+    """*Fast* or *Faithful*, guidance, steps, damping and, for sentences, the plan; in *More* samples, seed and tries.
 
     Args:
         prefix: before the ids of the elements.
-        sentences: puts the switch *Fast* or *Faithful* over the sliders, and the plan's slider under them.
+        sentences: puts the plan's slider under the others.
     """
 
-    pace: gr.Radio | None = None
     tries: gr.Slider | None = None
     strictness: gr.Slider | None = None
 
@@ -40,16 +39,15 @@ class Sampling:
 
     def build(self, more: Callable[[], None] = lambda: None) -> None:
         """Lays out the form; ``more`` lays out more at the end of *More*."""
-        if self.sentences:
-            self.pace = gr.Radio(
-                [(say("sampling.fast"), FAST), (say("sampling.faithful"), FAITHFUL)],
-                value=FAST,
-                label=say("sampling.pace", fast=FAST, faithful=FAITHFUL),
-                show_label=False,
-                container=False,
-                elem_id=f"{self.prefix}pace",
-                elem_classes="pd-way pd-pace",
-            )
+        self.pace = gr.Radio(
+            [(say("sampling.fast"), FAST), (say("sampling.faithful"), FAITHFUL)],
+            value=FAST,
+            label=say("sampling.pace", fast=FAST, faithful=FAITHFUL),
+            show_label=False,
+            container=False,
+            elem_id=f"{self.prefix}pace",
+            elem_classes="pd-way pd-pace",
+        )
         usual = SamplingRequest
         self.guidance = self._slider("sampling.guidance", GUIDANCE, usual.guidance, 0.1)
         self.steps = self._slider("sampling.steps", STEPS_SHOWN, DEFAULT_STEPS)
@@ -83,15 +81,10 @@ class Sampling:
 
     def wire(self, another: gr.Button, go: gr.Button) -> None:
         """Lets the switch and the slider follow each other, and ``another`` draw a seed and press ``go``."""
-        if self.pace is not None:
-            self.pace.input(None, inputs=self.pace, outputs=self.steps, js="(steps) => steps", **QUIET)
-            self.steps.change(None, inputs=self.steps, outputs=self.pace, js=_FOLLOWED, **QUIET)
+        self.pace.input(None, inputs=self.pace, outputs=self.steps, js="(steps) => steps", **QUIET)
+        self.steps.change(None, inputs=self.steps, outputs=self.pace, js=_FOLLOWED, **QUIET)
         drawn = another.click(None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET)
         drawn.then(None, js=f"() => document.getElementById({go.elem_id!r}).click()", **QUIET)
-
-    def opened(self, request: Mapping[str, Any]) -> dict[Any, Any]:
-        """Updates that show what a kept request says in other words."""
-        return {} if self.pace is None else {self.pace: gr.update(value=pace_of(request.get("steps")))}
 
 
 def seed_field(prefix: str, info: str = "sampling.seed_info", **options: Any) -> gr.Number:
@@ -104,8 +97,3 @@ def seed_field(prefix: str, info: str = "sampling.seed_info", **options: Any) ->
         min_width=0,
         **options,
     )
-
-
-def pace_of(steps: int | None) -> int | None:
-    """The choice of the switch for so many steps, None for neither."""
-    return steps if steps in (FAST, FAITHFUL) else None

@@ -18,7 +18,7 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status, table
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import settings, text
+from webdemo.ui.text.words import counted, settings, text
 from webdemo.ui.visitor import visitor
 
 from .results import QUIET, Parts, said
@@ -97,7 +97,7 @@ class StudyPanel:
         who, runs = visitor(), self._runs(ids)
         pairs = paired(*map(_motions, runs))
         study = self.studies.create(who.owner, question or "", names(runs), pairs, address=who.address)
-        line = f"The study has {count(study.pairs, 'pair')}. Send the link to the people who are to vote."
+        line = f"The study has {counted(study.pairs, 'pair')}. Send the link to the people who are to vote."
         return self._shown(study.id) | {self.line: status(line, tone="done"), self.making: gr.update(visible=False)}
 
     @said
@@ -149,15 +149,10 @@ def names(runs: Sequence[Opened]) -> tuple[str, str]:
     return first or "First run", second or "Second run"
 
 
-def count(number: int, what: str) -> str:
-    """Such as "one pair" or "12 pairs"."""
-    return f"one {what}" if number == 1 else f"{number} {what}s"
-
-
 def result_html(study: StudyEntry) -> str:
     """The result: a row a run, with the interval of its share in the votes for either."""
     votes = sum(study.wins) + study.ties
-    line = f"“{study.question}” {count(study.pairs, 'pair')}. "
+    line = f"“{study.question}” {counted(study.pairs, 'pair')}. "
     if not votes:
         return status(f"{line}Nobody has voted yet.")
     rows = [(name, wins, share(wins, sum(study.wins))) for name, wins in zip(study.runs, study.wins, strict=True)]
@@ -166,5 +161,5 @@ def result_html(study: StudyEntry) -> str:
         for name, number, said in [*rows, ("No difference", study.ties, "")]
     )
     shown = table("", ["Votes", "Share (95 % interval)"], body, "pd-votes")
-    voted = status(f"{line}{count(votes, 'vote')} of {count(study.voters, 'voter')}.")
+    voted = status(f"{line}{counted(votes, 'vote')} of {counted(study.voters, 'voter')}.")
     return f'{voted}<div class="pd-readouts">{shown}</div>'

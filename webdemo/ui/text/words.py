@@ -15,29 +15,10 @@ from webdemo.inference.run import Progress
 from webdemo.ui.runs import Waiting
 from webdemo.ui.visitor import visitor
 
+from .texts import texts
+
 log = logging.getLogger(__name__)
 
-_STAGES = {
-    "queue": "Waiting for another run to finish …",
-    "load": "Loading the model …",
-    "text": "Reading the prompt …",
-    "finish": "Finishing the motion …",
-}
-
-_SETTINGS = (
-    ("seconds", "Seconds"),
-    ("seed", "Seed"),
-    ("samples", "Samples"),
-    ("guidance", "Guidance"),
-    ("steps", "Steps"),
-    ("damping", "Damping"),
-    ("strictness", "Plan"),
-    ("sampler", "Sampler"),
-    ("marker", "Past ends at"),
-    ("cleanup", "Clean-up"),
-    ("tries", "Tries"),
-    ("planned", "Plan from the words"),
-)
 _ROLES = {"a": "acts first", "b": "reacts"}
 _PACE_STEPS = 3
 """Steps after which the pace is known, or a tenth of them all."""
@@ -60,7 +41,7 @@ def progress_line(progress: Progress) -> str:
     if progress.stage == "sample":
         line = _sampling_line(progress)
     else:
-        line = _STAGES.get(progress.stage, f"{progress.stage.capitalize()} …")
+        line = texts().get(f"stage.{progress.stage}", f"{progress.stage.capitalize()} …")
     return f"{tries_line(progress)}{line}"
 
 
@@ -124,6 +105,11 @@ def link_line(until: float) -> str:
     return f"Anyone who has this link{signed} can see the motion until {last}, unless you end its links first."
 
 
+def counted(number: int, what: str) -> str:
+    """Such as "one pair" or "12 pairs"."""
+    return f"one {what}" if number == 1 else f"{number} {what}s"
+
+
 def number(value: float, digits: int) -> str:
     """A number with ``digits`` after the point and a thin space between thousands."""
     return f"{value:,.{digits}f}".replace(",", "\u202f")
@@ -142,12 +128,13 @@ def settings(asked: Mapping[str, Any]) -> list[list[str]]:
         rows.append(["Given", str(given.get("name", ""))])
     if "actor" in asked:
         rows.append(["The given person", _ROLES.get(str(asked.get("role")), "")])
-    for key, name in _SETTINGS:
-        value = asked.get(key)
+    for key, name in texts().items():
+        kind, _, field = key.partition(".")
+        value = asked.get(field) if kind == "settings" else None
         if value is not None:
             if isinstance(value, bool):
                 value = "on" if value else "off"
-            rows.append([name, f"{value:g}" if key != "seed" and not isinstance(value, str) else str(value)])
+            rows.append([name, f"{value:g}" if field != "seed" and not isinstance(value, str) else str(value)])
     return [pair for pair in rows if pair[1]]
 
 
