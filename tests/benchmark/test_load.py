@@ -13,8 +13,7 @@ from motion import InputError
 from tests.server.lab import ROOT
 from webdemo.benchmark import attackers, load, server
 from webdemo.benchmark.attackers import ATTACKERS
-from webdemo.benchmark.jobs import KINDS
-from webdemo.benchmark.load import GOALS, LivePerson, Tally, attacked_figures, goals_missed
+from webdemo.benchmark.load import GOALS, KINDS, LivePerson, Tally, attacked_figures, goals_missed
 from webdemo.cli import main
 from webdemo.server.settings import Settings
 
@@ -64,8 +63,10 @@ def test_a_server_that_ends_is_one_sentence(tmp_path: Path, monkeypatch: pytest.
 
 def test_shares_are_compared_by_work() -> None:
     waits = {0: {"react": [(1.0, 1.0), (9.0, 4.0)]}, 1: {"generate": [(12.0, 2.0)], "render": [(90.0, 1.0)]}}
-    tally = Tally(done=3, kinds=waits, memory=[5.0, 9.0, 7.0, 6.0])
+    tally = Tally(done=3, kinds=waits, memory=[5.0, 9.0, 7.0, 6.0], healthz=[0.1] * 98 + [2.0, 4.0])
     figures = tally.figures()
+    times = [figures[f"healthz_{name}_seconds"] for name in ("median", "99th", "worst")]
+    assert times == pytest.approx([0.1, 2.02, 4.0]) and "page_worst_seconds" not in figures
     assert figures["longest_wait_over_fair_share"] == 1.5
     assert figures["memory_most_mb"] == 9.0 and figures["memory_last_over_first_quarter"] == 1.2
 

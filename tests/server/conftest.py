@@ -33,7 +33,7 @@ def patient() -> Iterator[None]:
 def local(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server for its own machine, without accounts."""
     folder = tmp_path_factory.mktemp("local")
-    with client_of(settings_for(folder, metrics_token="", rate=OFTEN)) as client:
+    with client_of(settings_for(folder, metrics_token="", rate=OFTEN, events=1000)) as client:
         yield client
 
 
@@ -44,7 +44,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(accounts, "COST", 2**4)
         add_accounts(folder / "data", "ada", "eve")
-        settings = settings_for(folder, accounts=True, host="0.0.0.0", hosts=["127.0.0.1"], rate=OFTEN)
+        settings = settings_for(folder, accounts=True, host="0.0.0.0", hosts=["127.0.0.1"], rate=OFTEN, events=1000)
         with client_of(settings) as client:
             yield client
 

@@ -46,11 +46,13 @@ def serve(port: int, data: str) -> None:
     """Serves until the process ends."""
     from webdemo.server.http import exchange
     from webdemo.server.logs import set_up_logs
+    from webdemo.server.queue import events
     from webdemo.server.serve import make_server
     from webdemo.server.settings import read_settings
     from webdemo.server.store import database
 
     exchange.BACK_OFF, database.SOUND_SECONDS = 0.0, 1.0  # no test waits for a refusal or for a look at the database
+    events.UNREAD_SECONDS = 3600.0  # some fetch their answers last
     pause, partner = (float(os.environ.get(name, "0")) for name in ("STUB_PAUSE", "STUB_PARTNER"))
     engine = stub_module().StubEngine(pause=pause, partner_pause=partner)
     settings = read_settings(port=port, data=data)

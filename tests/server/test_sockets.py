@@ -6,13 +6,18 @@ import resource
 import socket
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from functools import partial
 
+import gradio.routes
+import httpx
 import pytest
 
 from tests.server.queue.test_queue import wait_for
 from webdemo.server.serve import FILES, with_room_for_files
 from webdemo.server.settings import Settings
+from webdemo.server.store.scratch import UPLOADS as KEPT
 
 from .clients import JOIN, UPLOAD, answers, read_all
 
@@ -53,11 +58,26 @@ def test_few_large_bodies_come_at_a_time(served: tuple[str, int]) -> None:
         with connect(served) as fifth:
             fifth.sendall(head)
             said = read_all(fifth)
-            assert said.startswith(b"HTTP/1.1 422") and b"You already have 4 large requests" in said
+            assert said.startswith(b"HTTP/1.1 429") and b"You already have 4 large requests" in said
         assert all(read_all(one).startswith(b"HTTP/1.1 408") for one in slow)
     with connect(served) as one:
         one.sendall(head)
         assert read_all(one).startswith(b"HTTP/1.1 408"), "there is a place again"
+
+
+def test_an_upload_has_one_watcher_and_little_is_kept_of_it(served: tuple[str, int]) -> None:
+    """Each looks twenty times a second; and the names of uploads that never came stayed for ever."""
+    statuses = gradio.routes.file_upload_statuses
+    watch = partial(httpx.get, f"http://{served[0]}:{served[1]}{UPLOAD}_progress", timeout=30)
+    with ThreadPoolExecutor(1) as pool:
+        first = pool.submit(watch, params={"upload_id": "none"})
+        wait_for(lambda: "none" in statuses._signals)
+        assert watch(params={"upload_id": "other"}).status_code == 429
+        assert first.result().status_code == 404, "such an upload does not come"
+    assert watch(params={"upload_id": "again"}).status_code == 404, "there is a place again"
+    for i in range(2 * KEPT):
+        statuses.track(f"{i}")
+    assert len(statuses._statuses) == KEPT == len(statuses._signals)
 
 
 elsewhere = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="has one loopback address")

@@ -23,11 +23,13 @@ import httpx
 import numpy as np
 
 from motion import FPS, InputError
+from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
+from webdemo.server.queue.turns import units
 
+from . import PROMPTS
 from .attackers import ATTACKERS, CLIP, WAVE, attack
-from .jobs import KINDS, SHEET, Job
 from .server import serving, wait_until
 
 PROBE_EVERY = 1.0
@@ -55,6 +57,59 @@ GOALS: dict[str, tuple[float, float]] = {
 REST_SECONDS = 6.0
 """Seconds before memory is read; the server frees the memory of ended runs every few seconds."""
 _API = "gradio_api"
+SHEET = "render"
+
+
+@dataclass(frozen=True)
+class Job:
+    """A request that a simulated person sends.
+
+    Attributes:
+        endpoint: name of the endpoint.
+        data: its arguments; None stands for an uploaded :data:`CLIP`.
+        asked: fields of the request that the result's manifest must hold.
+        work: units of work, see :func:`webdemo.server.queue.turns.units`.
+    """
+
+    endpoint: str
+    data: tuple[Any, ...]
+    asked: dict[str, Any]
+    work: float
+
+
+def _generation(dice: random.Random, steps: int) -> Job:
+    r = GenerateRequest(
+        prompt=dice.choice(PROMPTS),
+        seconds=dice.choice((2.0, 4.0, 5.0)),
+        seed=dice.randrange(2**32),
+        samples=dice.choice((1, 1, 1, 2)),
+        steps=dice.choice((max(steps // 2, 1), steps)),
+    )
+    run = (r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler, r.model, r.tries)
+    return Job("generate", run, json.loads(json.dumps(r.to_dict())), units(r))
+
+
+def _reaction(dice: random.Random, steps: int) -> Job:
+    seed, seconds = dice.randrange(2**32), 2.0
+    chosen = (None, "", "a", 0, seconds, "a", seed, 1, 3.0, steps, 0.7, "ddim", "intergen", "offline")
+    data = (*chosen, False, "", 0, "", "")
+    return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
+
+
+def _prediction(dice: random.Random, steps: int) -> Job:
+    seconds = dice.choice((0.5, 1.0, 1.5))
+    data = (None, 1.5, seconds, "motion-mlp", 0, "", 0, "", "")
+    return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
+
+
+def _sheet(dice: random.Random, steps: int) -> Job:
+    """A contact sheet, which waits in the queue of events."""
+    look = ("png", "bodies", "light", "threequarter", 24, dice.choice((480, 640)), 360)
+    return Job(SHEET, (None, *look, "", 0, "", ""), {}, 1.0)
+
+
+KINDS = (_generation, _generation, _generation, _generation, _reaction, _sheet, _prediction)
+"""Jobs are drawn from these, so a kind that stands here twice is twice as frequent; a person's first is fixed."""
 
 
 @dataclass
@@ -109,7 +164,8 @@ class Tally:
         ]
         waited = [seconds_a_unit(waits) for waits in runs if waits]
         latencies = [took for kinds in self.kinds.values() for waits in kinds.values() for took, _ in waits]
-        first, last = (statistics.median(part or [0.0]) for part in _quarters(self.memory))
+        quarter = max(len(self.memory) // 4, 1)
+        first, last = (statistics.median(part or [0.0]) for part in (self.memory[:quarter], self.memory[-quarter:]))
         return {
             "runs_done": self.done,
             "runs_lost": self.lost,
@@ -117,22 +173,21 @@ class Tally:
             "runs_refused_or_failed": len(self.errors),
             "first_errors": self.errors[:3],
             "people_served": len(self.kinds),
-            "latency_median_seconds": statistics.median(latencies) if latencies else None,
-            "latency_worst_seconds": max(latencies, default=None),
             "longest_wait_over_fair_share": max(waited) / statistics.mean(waited) if waited else None,
-            "page_median_seconds": statistics.median(self.page) if self.page else None,
-            "page_worst_seconds": max(self.page, default=None),
-            "healthz_median_seconds": statistics.median(self.healthz) if self.healthz else None,
-            "healthz_worst_seconds": max(self.healthz, default=None),
+            **_spread("latency", latencies),
+            **_spread("page", self.page),
+            **_spread("healthz", self.healthz),
             "memory_most_mb": max(self.memory, default=0.0),
             "memory_last_over_first_quarter": last / first if first else None,
         }
 
 
-def _quarters(values: Sequence[float]) -> tuple[Sequence[float], Sequence[float]]:
-    """The first quarter of a series, and the last."""
-    size = max(len(values) // 4, 1)
-    return values[:size], values[-size:]
+def _spread(name: str, seconds: Sequence[float]) -> dict[str, float]:
+    """The median, the 99th percentile and the worst of some times; nothing where there are none."""
+    if not seconds:
+        return {}
+    figures = {"median": 50, "99th": 99, "worst": 100}
+    return {f"{name}_{figure}_seconds": float(np.percentile(seconds, of)) for figure, of in figures.items()}
 
 
 def seconds_a_unit(waits: Sequence[tuple[float, float]]) -> float:

@@ -13,8 +13,8 @@ from webdemo.inference.requests.sampling import SETTINGS
 from webdemo.inference.story import SceneRequest, read_story, split_sentence
 from webdemo.inference.story.request import MOST_SECONDS
 
+from .generation import check_out, run, write_result
 from .parser import add_reading, add_sampling, reading_choices, with_notes
-from .running import check_out, run, write_result
 
 
 def add_scene(commands: Any) -> None:

@@ -30,13 +30,12 @@ from webdemo.server.http.admin_pages import admin_routes
 from webdemo.server.http.guard import Guard, may_read_figures
 from webdemo.server.http.page_html import PageCache, keep_states_lean, kept_in_cache
 from webdemo.server.http.payloads import Payloads
-from webdemo.server.http.public_pages import public_routes
-from webdemo.server.http.study_pages import study_routes
+from webdemo.server.http.public_pages import public_routes, study_routes
 from webdemo.server.lab import Lab, engine_of
 from webdemo.server.live.streams import live_routes
 from webdemo.server.queue.events import FairEvents
 from webdemo.server.queue.recorder import Recorder
-from webdemo.server.store.scratch import Scratch, keep_files_apart, move_files_in_threads, visitors_folder
+from webdemo.server.store.scratch import Scratch, keep_files_apart, mend_uploads, visitors_folder
 from webdemo.ui.components.exports import Shelf
 from webdemo.ui.context import PageContext
 from webdemo.ui.page import build_page, launch_options, start_queue
@@ -127,7 +126,7 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     (mounted,) = [r.app for r in app.routes if isinstance(r, Mount) and isinstance(r.app, App)]
     keep_states_lean(mounted, page)
     keep_files_apart(mounted)
-    move_files_in_threads()
+    mend_uploads()
     parser: Any = gradio.route_utils.GradioMultiPartParser
     gradio.route_utils.GradioMultiPartParser = lambda *given, **options: parser(  # type: ignore[misc,assignment]
         *given, **options | {"max_files": MOST_FILES}
@@ -153,7 +152,7 @@ def _add_routes(app: FastAPI, lab: Lab) -> None:
 @contextlib.asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     lab: Lab = app.state.lab
-    gc.freeze()  # modules stay, so nobody looks for garbage among them
+    gc.freeze()  # modules stay: a search for garbage among them holds every thread up
     gc.enable()
     lost = await run_in_threadpool(lab.history.recover)
     if lost:
@@ -183,6 +182,7 @@ def _read_first() -> None:
     """Loads the parser, so that the first sentence that somebody types is read as fast as later ones."""
     try:
         read("They wave.")
+        gc.freeze()  # the parser stays
     except InputError as error:  # the page says so under what is typed
         log.warning("Sentences cannot be read: %s", error)
 

@@ -25,7 +25,7 @@ from .settings import Settings
 log = logging.getLogger(__name__)
 
 SWITCH_SECONDS = 0.001
-"""After which a thread that computes lets another go on, a fifth of Python's own: the page answers sooner."""
+"""Interpreter switch interval (CPython's default is 0.005): keeps the page responsive while a thread computes."""
 FILES = 512
 """Open files beside the connections: the database, motions, libraries."""
 OTHER = "Another process serves the lab in {}: stop it, or choose another folder with PASDEDEUX_DATA."

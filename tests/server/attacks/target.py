@@ -46,7 +46,7 @@ class Target:
         self.data, self.stub_pause = folder / "data", stub_pause
         self.canary = folder / "canary.txt"
         self.canary.write_text(CANARY)
-        given: dict[str, Any] = {"node": "target", "free_megabytes": 0, "rate": 100_000, "grace_seconds": 1}
+        given: dict[str, Any] = {"free_megabytes": 0, "rate": 100_000, "events": 1000, "grace_seconds": 1}
         if accounts:
             given |= {"accounts": 1, "host": "0.0.0.0", "hosts": '["127.0.0.1"]'}
             add_accounts(self.data, "ada", "eve")

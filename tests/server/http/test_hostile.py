@@ -13,14 +13,9 @@ import httpx
 import pytest
 from fastapi.testclient import TestClient
 
-from motion import InputError
 from tests.server.clients import FIELDS, HERE, REACT, UPLOAD, client_of, events_of, lab_of, settings_for
-from tests.server.lab import stub_module
-from webdemo.server.accounts.quotas import Quota
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 from webdemo.server.http import exchange
-from webdemo.server.queue.queue import FairQueue
-from webdemo.ui.visitor import Visitor
 
 
 @pytest.fixture(scope="module")
@@ -126,30 +121,6 @@ def test_throwing_the_cookie_away_gains_nothing(open_to_all: TestClient) -> None
     assert len(answers) > 20 and answers[-1] == 429
     other = TestClient(open_to_all.app, base_url=HERE, client=("203.0.113.9", 5))
     assert other.post("/gradio_api/queue/join", content=b"[]").status_code != 429
-
-
-def test_one_address_does_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    started = threading.Event()
-
-    class Busy:
-        ready = True
-
-        def run(self, request: Any, cancel: Any = None) -> Iterator[Any]:
-            started.set()
-            while not cancel.cancelled:
-                time.sleep(0.01)
-            yield from ()
-
-    queue = FairQueue(Busy(), Quota("runs waiting", 4, 3))  # type: ignore[arg-type]
-    request = stub_module().GenerateRequest(prompt="x")
-    jobs = [queue._enter("first", request, Visitor(person="first", address="a"))]
-    assert started.wait(10)
-    jobs += [queue._enter(f"s{i}", request, Visitor(person=f"p{i}", address="a")) for i in range(3)]
-    with pytest.raises(InputError, match="your network have 3 runs waiting"):
-        queue._enter("more", request, Visitor(person="more", address="a"))
-    jobs.append(queue._enter("other", request, Visitor(person="other", address="b")))
-    for job in jobs:
-        job.token.cancel()
 
 
 def test_whoever_asks_too_often_is_answered_once_a_second(

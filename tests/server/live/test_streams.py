@@ -71,7 +71,7 @@ def test_a_person_has_one_stream_and_a_server_has_so_many() -> None:
     assert some.find(second.id, ADA) is second
     for name in "xy":
         some.open(Visitor(name, name), "regennet")
-    with pytest.raises(Refused, match="There are 3 live streams here"):
+    with pytest.raises(InputError, match="There are 3 live streams here"):
         some.open(EVE, "agent")
     some.open(ADA, "agent")  # in place of their own
     some.close(some.find(some.open(Visitor("x", "x"), "agent").id, Visitor("x", "x")))
@@ -94,7 +94,7 @@ def test_one_address_cannot_take_all_places() -> None:
     some = streams()
     for name in ("a", "b"):
         some.open(Visitor(name, name, address="203.0.113.9"), "agent")
-    with pytest.raises(Refused, match="your network have 2 live streams"):
+    with pytest.raises(InputError, match="your network have 2 live streams"):
         some.open(Visitor("c", "c", address="203.0.113.9"), "agent")
     assert some.open(Visitor("d", "d", address="203.0.113.10"), "agent")
 

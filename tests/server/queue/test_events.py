@@ -18,7 +18,7 @@ from gradio.routes import App
 from starlette.routing import Mount
 
 from tests.server.attacks.target import Target
-from tests.server.clients import CALL, FIELDS, settings_for
+from tests.server.clients import CALL, FIELDS, client_of, settings_for
 from tests.server.lab import ROOT, stub_module
 from tests.server.queue.test_queue import wait_for
 from tests.ui.stub_page import stub_context
@@ -26,6 +26,7 @@ from webdemo.server.accounts.quotas import Quota
 from webdemo.server.accounts.visitors import Bindings
 from webdemo.server.app import create_app
 from webdemo.server.http.health import Figures
+from webdemo.server.queue import events
 from webdemo.server.queue.events import AT_ONCE, FairEvents
 from webdemo.ui.page import build_page, start_queue
 from webdemo.ui.visitor import Visitor
@@ -169,6 +170,26 @@ def test_whoever_waits_takes_no_thread_from_others(tmp_path: Path) -> None:
     assert page.max_threads >= page._queue.quota.everybody > page._queue.quota.address
 
 
+def test_answers_that_nobody_fetches_are_few(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An opened run takes 2 MB: 2,000 sessions of one stranger's took all memory within minutes."""
+
+    def ask() -> Any:
+        return client.post(f"{CALL}/generate", json={"data": FIELDS})
+
+    with client_of(settings_for(tmp_path, events=8, waiting=9)) as client:
+        (queue,) = [r.app.get_blocks()._queue for r in client.app.routes if isinstance(r, Mount)]  # type: ignore[attr-defined]
+        calls = []
+        while (answer := ask()).status_code == 200:
+            calls.append(answer.json()["event_id"])
+        wait_for(lambda: len(queue._answers) == len(calls))
+        assert len(calls) == 8 and ask().status_code == 429
+        assert "event: complete" in client.get(f"{CALL}/generate/{calls[0]}").text
+        monkeypatch.setattr(events, "UNREAD_SECONDS", 0.0)
+        assert ask().status_code == 200, "there is a place again"
+        wait_for(lambda: len(queue.pending_event_ids_session) == 7)
+        assert len(queue.pending_messages_per_session) == 8, "those and the fetched one's, which is empty"
+
+
 def test_nothing_that_computes_goes_past_the_queue() -> None:
     """What is called directly sets buttons or stops a run: it takes nothing that a client could make large."""
     page = build_page(stub_context(stub_module().StubEngine()))
@@ -180,7 +201,7 @@ def test_nothing_that_computes_goes_past_the_queue() -> None:
 
 @pytest.fixture(scope="module")
 def target(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    with Target(tmp_path_factory.mktemp("events"), accounts=True, stub_pause=0.1) as target:
+    with Target(tmp_path_factory.mktemp("events"), accounts=True, stub_pause=0.1, events=16) as target:
         yield target
 
 

@@ -152,6 +152,21 @@ def test_a_person_may_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None
     assert isinstance(people.ends["other"], Result)
 
 
+def test_one_address_does_not_fill_the_line() -> None:
+    queue = FairQueue(Gate(), Quota("runs waiting", 4, 3))  # type: ignore[arg-type]
+
+    def enter(name: str, address: str) -> Any:
+        return queue._enter(name, request(name), Visitor(person=name, address=address))
+
+    enter("first", "a")
+    wait_for(lambda: queue.running)
+    for name in ("second", "third", "fourth"):
+        enter(name, "a")
+    with pytest.raises(InputError, match="your network have 3 runs waiting"):
+        enter("fifth", "a")
+    assert enter("other", "b") and queue.close(0.0) == 1
+
+
 def test_a_full_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     gate, people = make(monkeypatch, everybody=2)
     for name in "abcd":

@@ -19,7 +19,7 @@ from .accounts import Accounts
 from .visitors import KNOWN_COOKIE, SESSION_COOKIE, YEAR, set_cookie
 
 AT_ONCE = 2
-"""Passwords that are checked at a time; further tries wait without holding a thread."""
+"""Passwords that are checked at a time, so that guesses cannot take all memory and cores; further tries wait."""
 WRONG = "The name or the password is wrong: try again."
 
 

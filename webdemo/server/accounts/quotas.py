@@ -83,6 +83,7 @@ class Quotas:
         gets, address_gets: a minute, of the others.
         events: unfinished events of the page: runs, films, files that are read.
         large: requests of a size that many of them together would fill the memory.
+        watched: streams that say how much of an upload has come, which look twenty times a second.
         waiting: runs in the queue.
         live: live streams.
         room: bytes that are stored. A person's is for runs, studies, uploads and downloads, that of an address and of
@@ -98,6 +99,7 @@ class Quotas:
         self.gets, self.address_gets = RateLimit(gets), RateLimit(gets * people)
         self.events = Quota("unfinished tasks", settings.events, near, 2 * max(near, settings.queue) + 64)
         self.large = Quota("large requests on their way", 4, 4 * people, 64)
+        self.watched = Quota("uploads that are watched", 1, people, 64)
         self.waiting = Quota("runs waiting", settings.waiting, settings.waiting * people, settings.queue)
         self.live = Quota("live streams", 1, max(1, settings.live // 2), settings.live)
         self.room = Quota("bytes", own, min(people * own, ADDRESS_SHARE * total), total)

@@ -20,7 +20,7 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from motion import InputError
-from webdemo.server.accounts.quotas import RateLimit, network_of
+from webdemo.server.accounts.quotas import OverQuota, Quota, RateLimit, network_of
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, YEAR, find_visitor, new_token, set_cookie
 from webdemo.server.audit import SENDER
 from webdemo.server.lab import Lab
@@ -33,7 +33,7 @@ from webdemo.ui.visitor import Visitor
 from .exchange import BAD_UPLOAD, BoundedBody, Exchange, declared_length, too_large
 from .page_html import PATHS
 from .payloads import Payloads
-from .routes import API, LIVE, Refused, is_public_page, is_upload, needs_no_sign_in, path_below
+from .routes import API, LIVE, PROGRESS, Refused, is_public_page, is_upload, needs_no_sign_in, path_below
 
 log = logging.getLogger(__name__)
 
@@ -73,7 +73,7 @@ class Guard:
     def __init__(self, app: ASGIApp, *, lab: Lab, payloads: Payloads) -> None:
         self.app, self.lab, self.payloads = app, lab, payloads
         self.settings, self.quotas, self.figures, self.bindings = lab.settings, lab.quotas, lab.figures, lab.bindings
-        self._large: dict[Exchange, tuple[str, str]] = {}
+        self._held: dict[Exchange, tuple[Quota, str, str]] = {}
         self.hosts = {name.lower() for name in lab.settings.hosts}
         if self.hosts or lab.settings.local:  # its own health check, and tunnels to it, name the loopback
             self.hosts |= {"localhost", "127.0.0.1", "::1"}
@@ -102,7 +102,7 @@ class Guard:
         except Exception as error:
             await exchange.refuse(self._refusal_of(error, exchange))
         finally:
-            self._large.pop(exchange, None)
+            self._held.pop(exchange, None)
             self._note(exchange, scope)
 
     async def _pass(self, exchange: Exchange, scope: Scope, receive: Receive) -> None:
@@ -116,6 +116,8 @@ class Guard:
             exchange.body = await self._body(scope, exchange, receive, visitor)
         else:
             self._check_names(scope, visitor.person)
+            if scope["path"] == PROGRESS:
+                self._hold(self.quotas.watched, exchange, visitor)
         if (
             scope["path"] == "/" or scope["path"].startswith("/study/")
         ) and VISITOR_COOKIE.encode() not in exchange.headers.get(b"cookie", b""):
@@ -138,7 +140,9 @@ class Guard:
 
     def _refusal_of(self, error: Exception, exchange: Exchange) -> Refused:
         """The response to an error, which is counted, and logged if it is internal."""
-        if isinstance(error, InputError):
+        if isinstance(error, OverQuota):
+            error = Refused(503 if error.whose == "everybody" else 429, str(error), "places")
+        elif isinstance(error, InputError):
             error = Refused(404 if exchange.scope["method"] == "GET" else 422, str(error), "input")
         if isinstance(error, Refused):
             self.figures.refused.labels(error.reason).inc()
@@ -261,12 +265,17 @@ class Guard:
         if is_upload(path):
             await self._make_room(visitor, size)
         elif size > _LARGE:
-            self.quotas.large.check(visitor.person, visitor.address, self._large.values())
-            self._large[exchange] = (visitor.person, visitor.address)
+            self._hold(self.quotas.large, exchange, visitor)
         body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds)
         if not is_upload(path) and path.startswith(API):
             self._check_call(await body.whole(), visitor.person, path)
         return body
+
+    def _hold(self, quota: Quota, exchange: Exchange, visitor: Visitor) -> None:
+        """Takes a place until a request is answered; raises OverQuota where there is none."""
+        held = [(person, address) for kind, person, address in self._held.values() if kind is quota]
+        quota.check(visitor.person, visitor.address, held)
+        self._held[exchange] = (quota, visitor.person, visitor.address)
 
     async def _make_room(self, visitor: Visitor, size: float) -> None:
         """Makes room for an upload on the disk and among the visitor's own files."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import sys
 import threading
@@ -131,6 +132,7 @@ class Health:
             self.error = f"a tiny generation ended in {type(error).__name__}"
         else:
             self._works, self.error = True, ""
+            gc.freeze()  # the networks stay: a search for garbage among their objects stops everything for 0.3 s
 
 
 def _state_of(check: Callable[[], Any]) -> str:

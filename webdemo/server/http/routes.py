@@ -10,6 +10,8 @@ _PUBLIC_PAGES = ("/share/", "/embed/")
 _SHOWN = "/shown/"
 """Path of the files that public pages load."""
 API = "/gradio_api/"
+PROGRESS = f"{API}upload_progress"
+"""Path of the streams that say how much of an upload has come."""
 LIVE = "/live/"
 """Path of the messages of live streams."""
 

@@ -22,7 +22,7 @@ from starlette.responses import JSONResponse, Response
 
 from motion import FPS, SMPL22, Clip, InputError
 from webdemo.inference.requests.live import PARTNERS, LivePartner
-from webdemo.server.accounts.quotas import OverQuota, Quota
+from webdemo.server.accounts.quotas import Quota
 from webdemo.server.http.routes import Refused
 from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
@@ -91,8 +91,8 @@ class Streams:
         """A new stream; the networks may have to be loaded first.
 
         Raises:
-            Refused: if there are too many.
-            InputError: for a partner that is not known.
+            Refused: if there are none here.
+            InputError: if there are too many, or for a partner that is not known.
         """
         if partner not in PARTNERS:
             raise InputError(f"There is no live partner {partner!r:.40}: choose {' or '.join(PARTNERS)}.")
@@ -111,7 +111,7 @@ class Streams:
         return stream
 
     def _admit(self, visitor: Visitor) -> None:
-        """Ends the person's other stream; raises Refused if there is no room for a new one."""
+        """Ends the person's other stream; raises InputError if there is no room for a new one."""
         if self._stopping:
             raise Refused(503, STOPPING, "live")
         if not self.quota.everybody:
@@ -120,10 +120,7 @@ class Streams:
             self._end(stream, OTHER_TAB)
         held = [(stream.person, stream.address) for stream in self._open.values()]
         held += [("", "")] * self._coming
-        try:
-            self.quota.check(visitor.person, visitor.address, held)
-        except OverQuota as over:
-            raise Refused(503, str(over), "live") from None
+        self.quota.check(visitor.person, visitor.address, held)
 
     def find(self, key: str, visitor: Visitor) -> LiveStream:
         """A person's stream.

@@ -6,11 +6,12 @@ history) in order of arrival. Runs are admitted at once, since they wait in :mod
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 from fastapi import HTTPException, Request
 from gradio.queueing import Event, EventQueue, Queue
@@ -30,6 +31,17 @@ leave room for short ones."""
 REST = 3.0
 """Times as long as the reading of a text took, its person's next one waits: a sentence takes 20 ms, and the longest
 texts, one after the other, would take a core from the runs of others."""
+UNREAD_SECONDS = 60.0
+"""Time for which an answer that nobody fetches is kept; it counts as an unfinished event. An opened run takes 2 MB."""
+
+
+class _Answer(NamedTuple):
+    """An answer that is to be fetched, and when it is dropped."""
+
+    session: str
+    event: str
+    owner: tuple[str, str]
+    until: float
 
 
 class _Messages(LRUCache[str, Any]):
@@ -61,6 +73,7 @@ class FairEvents(Queue):
         self.accounts = Accounts()
         self._begun: dict[Event, float] = {}
         self._rests: dict[str, float] = {}
+        self._answers: list[_Answer] = []
 
     async def push(self, body: Any, request: Request, username: str | None) -> Any:
         """Takes an event in.
@@ -70,13 +83,13 @@ class FairEvents(Queue):
                 everybody together has.
         """
         who = visitor_of(request)
-        known = [visitor_of(event.request) for event in self._unfinished()]
+        known = list(self._unfinished())
         try:
-            self.quota.check(who.person, who.address, ((other.person, other.address) for other in known))
+            self.quota.check(who.person, who.address, known)
         except OverQuota as over:
             self.figures.refused.labels(f"events of {over.whose}").inc()
             raise HTTPException(503 if over.whose == "everybody" else 429, str(over)) from None
-        self.accounts.meet(who.person, {other.person for other in known})
+        self.accounts.meet(who.person, {person for person, _ in known})
         taken, event, state = await super().push(body, request, username)
         if taken:
             self.bindings.check(event, who.person, begin=True)
@@ -106,14 +119,17 @@ class FairEvents(Queue):
     async def process_events(self, events: list[Event], *rest: Any, **more: Any) -> None:
         """Works on an event and charges its seconds to its person; the time of a run is charged where it waits."""
         (event,) = events
-        if self._waits_elsewhere(event):
-            return await super().process_events(events, *rest, **more)
-        self._begun[event] = began = time.monotonic()
+        began, who = time.monotonic(), visitor_of(event.request)
+        if not self._waits_elsewhere(event):
+            self._begun[event] = began
         try:
             await super().process_events(events, *rest, **more)
         finally:
-            del self._begun[event]
-            self._charge(event, time.monotonic() - began)
+            now, owner = time.monotonic(), (who.person, who.address)
+            self._answers.append(_Answer(event.session_hash, event._id, owner, now + UNREAD_SECONDS))
+            asyncio.get_running_loop().call_later(UNREAD_SECONDS, self._drop_answers)
+            if self._begun.pop(event, None) is not None:
+                self._charge(event, now - began)
 
     # ---- parts -----------------------------------------------------------------------------------
 
@@ -148,10 +164,29 @@ class FairEvents(Queue):
         for job in self.active_jobs:
             yield from job or ()
 
-    def _unfinished(self) -> Iterator[Event]:
-        yield from self._running()
-        for group in self.event_queue_per_concurrency_id.values():
-            yield from group.queue
+    def _unfinished(self) -> Iterator[tuple[str, str]]:
+        """The person and the address of each event that waits, goes on, or whose answer nobody has fetched."""
+        waiting = (event for group in self.event_queue_per_concurrency_id.values() for event in group.queue)
+        for event in (*self._running(), *waiting):
+            who = visitor_of(event.request)
+            yield who.person, who.address
+        self._drop_answers()
+        yield from (answer.owner for answer in self._answers)
+
+    def _drop_answers(self) -> None:
+        """Forgets answers that were fetched, and drops those that nobody has fetched for too long."""
+        now, pending = time.monotonic(), self.pending_event_ids_session
+        for answer in list(self._answers):
+            events = pending.get(answer.session, set())
+            there = answer.event in events and answer.session in self.pending_messages_per_session
+            if there and now < answer.until:
+                continue
+            self._answers.remove(answer)
+            events.discard(answer.event)
+            if not events:
+                pending.pop(answer.session, None)
+                if there:
+                    del self.pending_messages_per_session[answer.session]
 
 
 def _source(event: Event) -> str:

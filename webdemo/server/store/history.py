@@ -8,7 +8,7 @@ import re
 import secrets
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
@@ -22,7 +22,7 @@ from webdemo.inference.requests.predict import PredictResult
 from webdemo.inference.run import Result
 from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit, fingerprint
-from webdemo.ui.history import Opened
+from webdemo.ui.history import Opened, PublicPage
 from webdemo.view.thumbnail import thumbnail
 
 from .database import Database, Run, Share, entry_of, fields_of, locked, sentence_of, sentences
@@ -36,21 +36,27 @@ STEADY_SECONDS = 3600.0
 """A clock that has jumped is trusted after so much time without another jump."""
 UNDO_SECONDS = 600.0
 """For so long a removed run can be brought back."""
+LINK_DAYS = 30
+"""For which a link lasts."""
 _TRUTH = "truth.npz"
 """What really followed the past of a prediction."""
 _PREDICTION = ("past_frames", "error", "speed", "true_speed")
 _KEY = re.compile(r"\A[A-Za-z0-9_-]{16,64}\Z")
+_ENDED = "There is no such page, or it has ended: ask the person who sent it to you."
+_OFF = "This lab makes no public pages: the person who runs it can set PASDEDEUX_PUBLISH_DAYS."
 _MISSING = "There is no such run, or its link has expired: ask the person who sent it for a new one."
 
 
 class History:
-    """Keeps runs.
+    """Keeps runs, and shows them to others until that ends: by links, to the people of the lab, and by public pages, to
+    anybody.
 
     Args:
         database: where their rows are.
         folder: holds a folder a run.
         storage: counts what people store, and makes room; by default with no limit for one person.
         keep_days: age in days at which a run is removed unless it is a favourite.
+        publish_days: for which a public page lasts; 0 where there are none.
         clock: gives seconds since 1970.
     """
 
@@ -62,12 +68,13 @@ class History:
         storage: Storage | None = None,
         clock: Callable[[], float] = time.time,
         keep_days: float = 30,
+        publish_days: float = 30,
     ) -> None:
         self.database, self.folder = database, folder
         self.storage = storage or Storage(database, folder)
         self.clock = clock
         self._began, self._since = clock() - time.monotonic(), time.monotonic()
-        self.keep_days = keep_days
+        self.keep_days, self.publish_days = keep_days, publish_days
 
     # ---- while a run goes on ---------------------------------------------------------------------
 
@@ -205,6 +212,75 @@ class History:
             session.delete(self._own(session, run, owner))
         self.storage.drop([run])
 
+    # ---- shown to others -------------------------------------------------------------------------
+
+    def link(self, run: str, owner: str) -> tuple[str, float]:
+        """The link to a finished run: its key, and when it ends (seconds since 1970)."""
+        share = self._share(run, owner, public=False)
+        return share.key, share.until
+
+    def publish(self, run: str, owner: str) -> PublicPage:
+        """The public page of a finished run."""
+        if not self.publish_days:
+            raise InputError(_OFF)
+        return _page(self._share(run, owner, public=True))
+
+    @sentences()
+    def _share(self, run: str, owner: str, *, public: bool) -> Share:
+        """What shows a run, made where there is nothing; it lasts all its days from now on."""
+        now, days = time.time(), self.publish_days if public else LINK_DAYS
+        with self.database.session.begin() as session:
+            row = self._own(session, run, owner)
+            if row.state != "done":
+                raise InputError(f"This run has no result to show: it is {row.state}.")
+            there = (Share.run_id == run, Share.public == public, Share.until > now)
+            share = session.scalar(select(Share).where(*there)) or Share(key=secrets.token_urlsafe(18), public=public)
+            share.run, share.until = row, now + days * DAY
+            session.add(share)
+        audit("page-published" if public else "link-made", run=run, link=fingerprint(share.key))
+        return share
+
+    @sentences()
+    def revoke(self, run: str, owner: str) -> int:
+        """Ends the link to a run; returns how many there were."""
+        with self.database.session.begin() as session:
+            ended = _end(session, Share.run_id == self._own(session, run, owner).id, ~Share.public)
+        audit("links-ended", run=run, count=ended)
+        return ended
+
+    @sentences()
+    def pages(self, owner: str) -> Sequence[PublicPage]:
+        """The owner's public pages that have not ended, newest first."""
+        mine = (Run.owner == owner, Run.owner != "", Run.removed.is_(None), Share.public, Share.until > time.time())
+        query = select(Share).join(Run).where(*mine).order_by(Share.created.desc(), Share.key)
+        with self.database.session() as session:
+            return [_page(share) for share in session.scalars(query)]
+
+    @sentences()
+    def end_page(self, key: str, owner: str) -> None:
+        """Ends a public page; raises InputError if it is not the owner's."""
+        mine = select(Run.id).where(Run.owner == owner, Run.owner != "")
+        with self.database.session.begin() as session:
+            if not _end(session, Share.key == key, Share.public, Share.run_id.in_(mine)):
+                raise InputError("You have no such public page: reload the list.")
+        audit("page-ended", link=fingerprint(key))
+
+    @sentences()
+    def open_page(self, key: str) -> tuple[Opened, float]:
+        """A public page's result, and when the page ends, in seconds since 1970.
+
+        Raises:
+            InputError: the same sentence for no page, an ended one, and one whose result was removed.
+        """
+        stands = (Share.key == key, Share.public, Share.until > time.time(), Run.removed.is_(None))
+        with self.database.session() as session:
+            row = session.execute(select(Run, Share.until).join(Share).where(*stands)).first()
+        there = bool(self.publish_days) and row is not None
+        audit("page-opened", ok=there, link=fingerprint(key))
+        if row is None or not there:
+            raise InputError(_ENDED)
+        return self._opened(row[0]), row[1]
+
     # ---- expiry ----------------------------------------------------------------------------------
 
     def _is_steady(self) -> bool:
@@ -275,3 +351,12 @@ class History:
             curves: dict[str, Any] = {name: tuple(value) for name, value in kept.items() if name != "past_frames"}
             return PredictResult(**whole, truth=truth, past_frames=kept["past_frames"], **curves)
         return Result(**whole)
+
+
+def _end(session: Session, *where: Any) -> int:
+    return cast(CursorResult[Any], session.execute(delete(Share).where(*where))).rowcount
+
+
+def _page(share: Share) -> PublicPage:
+    title = entry_of(share.run).title
+    return PublicPage(key=share.key, title=title, created=share.created, until=share.until)

@@ -23,7 +23,7 @@ from webdemo.ui.history import Entry, Found, Kept, Opened, Search, Usage
 from webdemo.ui.visitor import Visitor
 
 from .database import Run, entry_of, fields_of, locked, sentences
-from .sharing import Sharing
+from .history import History
 from .storage import weight_of
 
 LONGEST_TITLE, LONGEST_NOTE, LONGEST_TAGS = 200, 4000, 300
@@ -39,7 +39,7 @@ LARGEST_KEPT = 20_000
 """Characters of the settings of a tab."""
 
 
-class Notebook(Sharing):
+class Notebook(History):
     """A history whose owners can search it, write in it, show it and take it along; see :class:`History`."""
 
     # ---- finding ---------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import os
 import shutil
@@ -12,10 +13,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import gradio.routes
 from gradio import processing_utils
 from gradio.data_classes import GradioModel, GradioRootModel
 from gradio.routes import App
-from gradio.utils import get_upload_folder
+from gradio.utils import LRUCache, get_upload_folder
 from gradio_client.utils import is_file_obj_with_meta, traverse
 from starlette.concurrency import run_in_threadpool
 
@@ -32,6 +34,8 @@ IN_USE_SECONDS = 60.0
 """Files younger than this are kept in any case, since they may be in use."""
 LEAST_BYTES = 2**17
 """What a file weighs at least: each takes blocks of the disk and time at every count, also where it is empty."""
+UPLOADS = 256
+"""Uploads whose progress is kept."""
 _File = tuple[float, int, str]
 """When it was made, its weight in bytes and its path."""
 
@@ -186,13 +190,22 @@ async def _move_files(data: Any, *where: Any, **options: Any) -> Any:
     return await run_in_threadpool(move) if files or isinstance(data, GradioModel | GradioRootModel) else move()
 
 
-def move_files_in_threads() -> None:
-    """Makes Gradio check and copy the files of events in threads.
+class _Signals(LRUCache[str, asyncio.Event]):
+    def __missing__(self, upload: str) -> asyncio.Event:
+        self[upload] = made = asyncio.Event()
+        return made
+
+
+def mend_uploads() -> None:
+    """Makes Gradio check and copy the files of events in threads, and forget the progress of old uploads.
 
     It asks the system some hundred times about a file's place and reads all of it. On the event loop, which would wait
     for the interpreter lock after each of these, the files of one result kept every other request waiting for a second.
+    What nobody watches to its end, and every upload that was ever asked for, it keeps for good.
     """
     processing_utils.async_move_files_to_cache = _move_files
+    statuses: Any = gradio.routes.file_upload_statuses
+    statuses._statuses, statuses._signals = LRUCache(UPLOADS), _Signals(UPLOADS)
 
 
 def folder_of(person: str) -> Path:
