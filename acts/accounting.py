@@ -152,7 +152,8 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
     if any("-" in verb and verb.replace("-", "") in said for verb in verbs):
         return True
     own = [t for t in within if t.pos_ == "VERB" and _counts(t, parsed) and _lemma(t, parsed) not in words.light]
-    return len(shared) >= 2 or (not own and bool(shared))
+    empty = not any(_counts(t, parsed) for t in within)  # "starts to fight"
+    return len(shared) >= 2 or (not own and (bool(shared) or empty))
 
 
 def shown_caption(act: Act, entry: Entry) -> str:
@@ -232,7 +233,8 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     if text == "own":
         return act.patient is None or act.part_of in act.agents
     if _is_target(token) and any(slot in shown_caption(act, entry) for slot in ("{b}", "{a+b}")):
-        return not any(c.lower_.endswith(("self", "selves")) for c in token.children)
+        goes_by = "past {b}" in shown_caption(act, entry)  # "staggers towards him" is not "past him"
+        return not goes_by and not any(c.lower_.endswith(("self", "selves")) for c in token.children)
     loose = token.pos_ in ("ADV", "ADP") and not _is_target(token)  # "dances around" is more than "dances"
     said = said_words((shown_caption(act, entry),) if loose else entry.caption)
     if any(forms & each for each in (said, set(" ".join(act.manner).split()))):
@@ -246,8 +248,9 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     if token.pos_ in ("VERB", "NOUN") and _alike(lemma, _verbs(entry.caption), entry.synsets):
         return True
     if act.thing and forms & set(act.thing.split()):  # "plays the violin" is not "plays the guitar"
-        shown = said_words((with_thing(act, shown_caption(act, entry))[1],))
-        return bool(kind_of(act.thing)) and not any(kind_of(word) for word in shown - forms)
+        shown = with_thing(act, shown_caption(act, entry))[1]
+        others = any(kind_of(word) for word in said_words((shown,)) - forms)
+        return "{thing}" in shown or bool(entry.thing and kind_of(act.thing) and not others)
     if (family := words.part(lemma)) and not (lemma in words.metres and act.distance is not None):
         sided = act.side is not None and lemma in closed("limbs") and any(c.lower_ == act.side for c in token.children)
         return sided or (act.part is not None and family == words.part(act.part))

@@ -16,7 +16,7 @@ from acts.plan import other_of
 from .frames import Frame
 from .lexicon import Entry, Lexicon, kind_of, lexicon
 from .plan import Act, Plan
-from .reading.vocabulary import closed
+from .reading.vocabulary import closed, vocabulary
 
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _SLOT = re.compile(r"\{([a-z_]+)\} ?")
@@ -72,7 +72,8 @@ def worded(act: Act, caption: str) -> str:
     other = act.patient or ("b" if act.agents[0] == "a" else "a")
     caption = caption.replace("{a+b}", "{a}")
     caption = caption if act.part else caption.replace(" on the {part}", "")
-    limb = act.part or ("foot" if _BY_FOOT.search(caption) else "hand")
+    trunk = vocabulary().part(act.part or "") in closed("trunk")  # which is touched, and touches nothing
+    limb = ("" if trunk else act.part) or ("foot" if _BY_FOOT.search(caption) else "hand")
     text = _VERB.sub(lambda m: ("are" if m[1] == "be" else m[1]) if both else singular(m[1]), caption)
     values = {
         "a": "they" if both else _NAMES[act.agents[0]],

@@ -213,7 +213,7 @@ def of_the_last(event: Event, acts: Sequence[Act]) -> Event | None:
     if part is None or part.kind != "part" or part.who:
         return None
     last = next((act for act in reversed(acts) if "".join(act.agents) == who), None)
-    if last is None or last.patient is None:
+    if last is None or last.patient is None or last.direction == "away":  # "turns away and covers his face"
         return None
     handles = not part.bare or (last.part is not None and part.definite)
     return replace(event, object=replace(part, who=last.patient)) if handles else None

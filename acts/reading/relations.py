@@ -66,6 +66,7 @@ def related(
         if kind == "after":
             act = acts[act.id] = _upright_again(other, _turned_to(other, act, known), known)
             kind = "with" if act.act == other.act == "stand-tall" else kind  # "straighten and rise"
+            kind = "with" if _carries(other, known) and _carries(act, known) and other.agents == act.agents else kind
             if _walks_on(other, act, known):
                 kind, act = "with", act.model_copy(update={"act": "walk-ahead", "patient": None, "thing": None})
                 acts[act.id] = act
@@ -137,9 +138,13 @@ def _upright_again(first: Act, then: Act, known: Lexicon) -> Act:
 
 def _walks_on(first: Act, then: Act, known: Lexicon) -> bool:
     """True for a person who carries the other and walks, with them still in the arms or on the back."""
-    carries = any(isinstance(shape, Lift) and shape.carry != "up" for shape in known.entries[first.act].stage)
     leaves = then.direction == "away" or (_goes(then, {"away"}, known) and not (then.thing or then.direction))
-    return carries and first.agents == then.agents and not leaves and _goes(then, {"past", "away", "ahead"}, known)
+    same = _carries(first, known) and first.agents == then.agents
+    return same and not leaves and _goes(then, {"past", "away", "ahead"}, known)
+
+
+def _carries(act: Act, known: Lexicon) -> bool:
+    return any(isinstance(shape, Lift) and shape.carry != "up" for shape in known.entries[act.act].stage)
 
 
 def _answers_blow(first: Act, then: Act, known: Lexicon) -> bool:

@@ -113,6 +113,7 @@ GESTURES: Mapping[str, Stroke] = {
     "photo": Stroke(at=(0.08, 0.58, 0.28), pole=(0.7, -1.0, 0.1), both=True),
     "head": Stroke(at=(0.12, 0.66, -0.05), pole=(1.0, 0.1, 0.3), on="head"),
     "mouth": Stroke(at=(0.07, 0.48, 0.17), on="head"),
+    "blows": Stroke(at=(0.08, 0.4, 0.29), by=(0.0, 0.08, -0.12), rate=0.4, sinks=True, on="head"),
     "fans": Stroke(at=(0.12, 0.42, 0.22), around=(0.1, 0.0, 0.0), rate=2.0, parallel=True),
     "brushes": Stroke(at=(0.08, 0.49, 0.2), by=(0.045, 0.0, 0.0), rate=2.2, pole=(0.8, -0.8, 0.0), on="head"),
     "eats": Stroke(at=(0.085, 0.31, 0.24), by=(0.01, -0.15, 0.06), rate=0.5, on="head"),

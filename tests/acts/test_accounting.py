@@ -41,6 +41,7 @@ from webdemo.inference.engine import note
         ("A spins around twice.", ()),
         ("A walks around.", ("around",)),
         ("A swings the bat around.", ("around",)),
+        ("A trips over a stone.", ("over a stone",)),
     ],
 )
 def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str, ...]) -> None:
@@ -107,7 +108,6 @@ def test_what_is_done_is_said_without_what_was_not_measured() -> None:
         ("They high-five.", ""),
         ("A strokes B's cheek.", ""),
         ("A lifts B up.", ""),
-        ("A blows a kiss to B.", "blows a kiss to B"),
         ("A shakes his fist at B.", "shakes his fist at B"),
         ("A rests her head on B's lap.", "rests her head on B's lap"),
         ("They spin next to each other.", "spin next to each other"),

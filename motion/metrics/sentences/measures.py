@@ -60,11 +60,6 @@ def _hand_height(m: Motion, who: int) -> str:
     return f"hand {_length(abs(lift))} {'above' if lift > 0 else 'below'} the shoulder"
 
 
-def _foot_height(m: Motion, who: int) -> float:
-    left, right = m.pair(who, "ankle")[..., 1]
-    return float(np.abs(left - right).max())
-
-
 def _standing(height: float | np.floating) -> str:
     return f"{100 * min(1.0, float(height)):.0f} % of standing height"
 
@@ -109,7 +104,9 @@ _TABLE: dict[str, Callable[..., str]] = {
     "jumps": lambda m, who, *_, **__: f"both feet rise by {_length(_rise(m, who))}",
     "hand_up waves hands_high hand_over_head arm_level": lambda m, who, *_, **__: _hand_height(m, who),
     "strikes": lambda m, who, *_, **__: f"hand moves at {_wrist_speed(m, who).max():.1f} m/s",
-    "foot_up knee_high kicks": lambda m, who, *_, **__: f"foot {_length(_foot_height(m, who))} high",
+    "foot_up knee_high kicks": lambda m, who, *_, **__: (
+        f"foot {_length(np.ptp(m.pair(who, 'ankle')[..., 1], axis=0).max())} high"
+    ),
 }
 MEASURES = {name: said for names, said in _TABLE.items() for name in names.split()}
 """The measures by the name of their predicate."""

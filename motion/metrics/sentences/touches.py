@@ -84,11 +84,6 @@ def both_hands_meet(m: Motion, gap: float = 0.15) -> Mask:
     return np.minimum(straight, crossed) < gap
 
 
-def opposite(side: str) -> str:
-    """ "right" for "left", and the other way round."""
-    return SIDES[1 - SIDES.index(side)]
-
-
 def to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
     """(P, T) least distance of points (P, T, 3) to a person's joints of a part, such as "arm" or "left arm"."""
     side, _, name = part.rpartition(" ")
@@ -108,7 +103,7 @@ def hand_on(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_J
     gaps = to_joints(m, m.hands(who, side), 1 - who, part)
     if part.startswith(SIDES):
         named, _, name = part.partition(" ")
-        gaps[gaps >= to_joints(m, m.hands(who, side), 1 - who, f"{opposite(named)} {name}")] = np.inf
+        gaps[gaps >= to_joints(m, m.hands(who, side), 1 - who, f"{SIDES[1 - SIDES.index(named)]} {name}")] = np.inf
     return gaps.min(axis=0) < gap
 
 

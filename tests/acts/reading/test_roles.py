@@ -39,21 +39,14 @@ def last(text: str) -> Act:
         ("A drops the book and kicks B.", {"act": "kick", "agents": ("a",), "patient": "b"}),
         ("The physio holds the ankle of the patient and bends the knee.", {"act": "move-other", "patient": "b"}),
         ("She holds the ankle of the patient and raises a hand.", {"act": "raise-arm"}),
+        ("B does push-ups beside him.", {"act": "push-ups", "times": None}),
+        ("He does ten sit-ups.", {"act": "sit-ups", "times": 10}),
         ("She coaxes him to sit down.", {"act": "sit-down", "agents": ("b",)}),
     ],
 )
 def test_the_last_act_is_what_the_words_say(text: str, fields: dict[str, object]) -> None:
     act = last(text)
     assert {name: getattr(act, name) for name in fields} == fields
-
-
-@pytest.mark.parametrize(
-    ("text", "act", "times"),
-    [("B does push-ups beside him.", "push-ups", None), ("He does ten sit-ups.", "sit-ups", 10)],
-)
-def test_a_deed_with_a_hyphen_is_one_word(text: str, act: str, times: int | None) -> None:
-    plan = read(text)
-    assert [(found.act, found.times) for found in plan.acts] == [(act, times)] and not plan.unread
 
 
 def test_one_who_is_held_tugs_meanwhile() -> None:

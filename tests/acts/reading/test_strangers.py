@@ -28,6 +28,10 @@ from tests.acts.reading.reading import told
         # whose shoes they are
         ("A sits down and B ties his shoes for him.", [("sit-down", "a", None), ("tie-other-shoes", "b", "a")]),
         ("A takes off his shoes.", [("change-shoes", "a", None)]),
+        ("A turns away and covers his face.", [("turn-away", "a", "b"), ("cover-face", "a", None)]),
+        ("A covers B's eyes from behind.", [("cover-eyes", "a", "b")]),
+        ("He carries her piggyback.", [("carry-back", "a", "b")]),
+        ("A staggers towards B.", [("stagger-to", "a", "b")]),
         # WordNet's verbs with their particles
         ("He is bowled over.", [("push-over", "b", "a")]),
         ("He dozes off.", [("lie-down", "a", None)]),
