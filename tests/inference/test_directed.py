@@ -14,7 +14,7 @@ from models.motion_tokens import FEATURES
 from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import Engine, GenerateRequest
-from webdemo.inference.pipelines.given import FADE, Directed, directed, draft_of, with_given, with_joints
+from webdemo.inference.pipelines.given import FADE, Scene, directed, draft_of, with_given, with_joints
 from webdemo.inference.run import CancelToken, StageTimer
 
 FRAMES = 60
@@ -125,7 +125,7 @@ def test_a_single_pose_moves_only_what_is_near_it() -> None:
     pose = made[0, 30:31].copy()
     pose[..., 1:, 0] += 0.05
     frames = FRAMES
-    scene = Directed(frames, None, parts=[KnownFrames(0, [30], pose)])
+    scene = Scene(frames, None, parts=[KnownFrames(0, [30], pose)])
     found = scene.duet(made, lambda person: person).positions
     np.testing.assert_allclose(found[0, 30], pose[0], atol=1e-6)
     away = np.abs(np.arange(frames) - 30) > FADE

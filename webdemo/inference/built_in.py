@@ -63,14 +63,14 @@ BUILT_IN = (
     Method(
         name="nearest",
         label="Nearest recorded reaction",
-        summary="Plays the recorded answer to the recording that is most like the given motion. Here it knows "
-        "twelve stretches of salsa and one handshake, so it suits dances; it is as good as its recordings.",
+        summary="Takes the recorded answer to the recording that is most like the given motion, in its tempo, and has "
+        "InterGen finish it. Here it knows twelve stretches of salsa and one handshake, so it suits dances.",
         tasks=("react",),
         takes=frozenset({"actor", "first pose"}),
-        fixed={"steps": 1, "guidance": 1.0, "damping": 0.0, "sampler": "ddim"},
-        defaults={"steps": 1},
+        fixed={"guidance": 1.0},
         seconds=(1.0, 60.0),
         weights="nearest",
+        needs=("intergen",),
         load=partial(load_pipeline, "nearest.NearestPipeline"),
     ),
     Method(

@@ -19,19 +19,17 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from acts.staging.window import KnownFrames
+from acts.staging.window import KnownFrames, KnownPath
 from models.agent.recogniser import OBSERVED, PREDICTED, Recogniser, sampled
-from models.known import Hold, Known
 from models.weights_io import load_network
-from motion import FPS, SMPL22, Clip, Duet
+from motion import FPS
 from motion.transforms import MEDIAN_START_DISTANCE, Placement
 from motion.vectors import Array
-from webdemo.inference.finish.joining import joined
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.plans import KeptPlan, plan_of_words
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer, until_result
 
-from .given import NAMES, Finish, Reaction, hold_of, settle
+from .given import Reaction, hold_of
 from .intergen import InterGenPipeline
 from .predictor import PredictorPipeline, to_last_pose
 
@@ -45,9 +43,6 @@ FLOOR = 1e-3
 """Added to each probability, so that one look cannot rule a gesture out."""
 FIRST, BETWEEN = 45, 15
 """Frame of the agent's first look (the last frame of a shorter motion), and frames between two looks."""
-_HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
-_SEAM = 0.02
-"""Metres by which the clean-up may move the last pose of the past, at most."""
 _NO_WORDS = "The virtual agent finds the words itself, so yours were not used."
 
 
@@ -143,28 +138,6 @@ class Eye:
         )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Answering(Reaction):
-    """The agent's response, which continues what it has done so far.
-
-    Attributes:
-        past: (F, 22, 3) metres in the person's world; it stays unchanged.
-    """
-
-    past: Array
-
-    def duet(self, pair: Array, finish: Finish) -> Duet:
-        """The duet of one sample; ``finish`` cleans up the frames that continue the past."""
-        past, seen = self.placement.to_network(self.past), len(self.past)
-        off = past[-1:] - pair[1, seen - 1]
-        later = pair[1, seen:] + settle(off, np.arange(1, len(pair[1]) - seen + 1))[0]
-        made = self.placement.to_world(finish(np.concatenate([past, later]).astype(pair.dtype)))
-        if np.abs(made[seen - 1] - self.past[-1]).max() > _SEAM:  # what comes later has given the past other steps
-            made = joined(made, np.arange(seen), self.past).astype(made.dtype)
-        made[:seen] = self.past
-        return Duet(self.clip, Clip(made, FPS, self.clip.skeleton, name=NAMES[1]), NAMES)
-
-
 class AgentPipeline:
     """Lets InterGen respond to what an :class:`Eye` recognises.
 
@@ -201,7 +174,7 @@ class AgentPipeline:
             waits = yield from until_result(self.answers.run(first, cancel, timer, self._attending(first)))
             past = np.asarray(waits.duets[0].b.positions)[:frame]  # type: ignore[union-attr]
             asked = replace(asked, prompt=said[1], plan=KeptPlan(plans[1:]))
-            scene: Reaction = self._answering(asked, past)
+            scene = self._answering(asked, past)
         else:
             scene = self._attending(asked)
         result = yield from until_result(self.answers.run(asked, cancel, timer, scene))
@@ -213,26 +186,19 @@ class AgentPipeline:
 
         Known are one frame of the other person, and the place of the agent's pelvis and the direction of its hips.
         """
-        clip, model = request.actor, self.answers.model
-        placement = Placement.of(clip.cut(0, 1), "a")
-        layout = model.layout
-        known = Known.nothing(layout.num_frames(layout.num_tokens(clip.num_frames)))
-        known.add_person(0, torch.tensor(placement.to_network(clip.positions[:1]), dtype=torch.float32))
-        frames = range(clip.num_frames)
-        places = torch.tensor([[0.0, MEDIAN_START_DISTANCE]]).expand(len(frames), -1)
-        known.add_path(1, frames, places, torch.full((len(frames),), torch.pi))
-        for hip in _HIPS:  # beside the pelvis, turned by half a turn about Y
-            for axis, number in ((0, -float(SMPL22.offsets[hip, 0])), (2, 0.0)):
-                known.rows[:, 1, : len(frames), 3 * hip + axis] = number
-                known.mask[:, 1, : len(frames), 3 * hip + axis] = True
-        given = Hold(known, layout, model.mean, model.std)
+        clip = request.actor
+        placement, frames = Placement.of(clip.cut(0, 1), "a"), range(clip.num_frames)
+        places = np.tile([0.0, MEDIAN_START_DISTANCE], (len(frames), 1))
+        stand = KnownPath(1, frames, places, np.full(len(frames), np.pi), turned=True)
+        seen = KnownFrames(0, [0], placement.to_network(clip.positions[:1]))
+        given = hold_of(self.answers.model, clip.num_frames, [seen, stand])
         return Reaction(clip.num_frames, given, clip=clip, place=0, placement=placement)
 
-    def _answering(self, request: ReactRequest, past: Array) -> Answering:
+    def _answering(self, request: ReactRequest, past: Array) -> Reaction:
         """A response to what the person did while the agent waited."""
         clip, model, seen = request.actor, self.answers.model, len(past)
         placement = Placement.of(clip.cut(0, seen), "a", request.prompt)
         both = (clip.positions[:seen], past)
         parts = [KnownFrames(i, range(seen), placement.to_network(person)) for i, person in enumerate(both)]
         given = hold_of(model, clip.num_frames, parts)
-        return Answering(clip.num_frames, given, clip=clip, place=0, placement=placement, past=past)
+        return Reaction(clip.num_frames, given, parts=parts, clip=clip, place=0, placement=placement)

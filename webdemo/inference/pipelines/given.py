@@ -98,25 +98,65 @@ Given = Hold | GivenPerson | Between
 
 @dataclass(frozen=True)
 class Scene:
-    """A scene in which both people are generated.
+    """A scene in which both people are made around what is given, if anything.
 
     Attributes:
         frames: length at 30 fps.
-        given: what is known of the motion, if anything.
+        given: what is known of the motion at every step.
         draft: what a network that reads drafts sees of one, see :meth:`models.known.Known.features`.
+        parts: what the finished motion meets.
+        poses: holds also the poses of the draft.
+        strictness: the share of the steps, from the first one on, in which the sample is held to them.
     """
 
     frames: int
     given: Given | None = None
     draft: Tensor | None = None
+    parts: Sequence[Part] = ()
+    poses: Hold | None = None
+    strictness: float = 0.0
 
     def held(self, steps: int) -> list[Given | None]:
-        """What is known at each of so many denoising steps."""
-        return [self.given] * steps
+        """What is known at each of so many denoising steps: the places and, while the plan is strict, the poses."""
+        places, poses = self.given, self.poses
+        if poses is None or not isinstance(places, Hold):
+            return [places] * steps
+        shares = (min(max(self.strictness * steps - step, 0.0), 1.0) for step in range(steps))
+        return [poses if s == 1 else Between(places, poses, s) if s else places for s in shares]
+
+    @property
+    def shares(self) -> Tensor:
+        """See :attr:`models.known.Hold.shares`; over all steps."""
+        total = torch.zeros(self.frames)
+        for hold, weight in ((self.given, 1 - self.strictness), (self.poses, self.strictness)):
+            if isinstance(hold, Hold):
+                total = total + weight * hold.shares[: self.frames]
+        return total
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """The duet of one sample (2, T, 22, 3) in metres; ``finish`` cleans up a generated person."""
-        return Duet.from_positions(np.stack([finish(person) for person in pair]), fps=FPS, roles=NAMES)
+        people = [self.met(i, finish(person)) for i, person in enumerate(pair)]
+        return Duet.from_positions(np.stack(people), fps=FPS, roles=NAMES)
+
+    def met(self, person: int, made: Array) -> Array:
+        """A made person (T, 22, 3) who meets what is given of them exactly; what was made leads there smoothly."""
+        own = [part for part in self.parts if isinstance(part, KnownFrames) and part.person == person]
+        if given := [part for part in own if not part.joints]:
+            at = np.concatenate([np.asarray(p.frames) for p in given])
+            wanted = np.concatenate([p.positions for p in given])
+            runs = np.isin(at + 1, at) | np.isin(at - 1, at)  # a single pose says nothing about speed
+            if runs.any():
+                made = joined(made, at[runs], wanted[runs])
+            apart = np.abs(at[:, None] - at[~runs])
+            alone = ~runs & (np.sum(apart <= 2 * PASSING, axis=1) == 1)  # a series says how people move
+            if alone.any():
+                held = np.isin(np.arange(len(made)), at)
+                made = passing(made, at[alone], wanted[alone], held)
+            made = with_given(made, at, wanted)
+        for part in own:
+            if part.kept:
+                made = with_joints(made, part)
+        return made
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,64 +175,10 @@ class Reaction(Scene):
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """The given person with the generated one, mapped back to their world."""
-        made = self.placement.to_world(finish(pair[1 - self.place]))
+        made = self.placement.to_world(self.met(1 - self.place, finish(pair[1 - self.place])))
         people = [Clip(made, FPS, self.clip.skeleton, name=NAMES[1 - self.place])]
         people.insert(self.place, self.clip)
         return Duet(people[0], people[1], NAMES)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Directed(Scene):
-    """Both people are made around what is given.
-
-    Attributes:
-        parts: what the finished motion meets.
-        poses: holds also the poses of the draft.
-        strictness: the share of the steps, from the first one on, in which the sample is held to them.
-    """
-
-    parts: Sequence[Part]
-    poses: Hold | None = None
-    strictness: float = 0.0
-
-    def held(self, steps: int) -> list[Given | None]:
-        """The places and, while the plan is strict, the poses."""
-        places, poses = self.given, self.poses
-        if poses is None or not isinstance(places, Hold):
-            return [places] * steps
-        shares = (min(max(self.strictness * steps - step, 0.0), 1.0) for step in range(steps))
-        return [poses if s == 1 else Between(places, poses, s) if s else places for s in shares]
-
-    @property
-    def shares(self) -> Tensor:
-        """See :attr:`models.known.Hold.shares`; over all steps."""
-        total = torch.zeros(self.frames)
-        for hold, weight in ((self.given, 1 - self.strictness), (self.poses, self.strictness)):
-            if isinstance(hold, Hold):
-                total = total + weight * hold.shares[: self.frames]
-        return total
-
-    def duet(self, pair: Array, finish: Finish) -> Duet:
-        """As :meth:`Scene.duet`; what is given is met exactly, and what was made leads there smoothly."""
-        people = [finish(person) for person in pair]
-        for person in range(2):
-            given = [p for p in self.parts if isinstance(p, KnownFrames) and p.person == person and not p.joints]
-            if given:
-                at = np.concatenate([np.asarray(p.frames) for p in given])
-                wanted = np.concatenate([p.positions for p in given])
-                runs = np.isin(at + 1, at) | np.isin(at - 1, at)  # a single pose says nothing about speed
-                if runs.any():
-                    people[person] = joined(people[person], at[runs], wanted[runs])
-                apart = np.abs(at[:, None] - at[~runs])
-                alone = ~runs & (np.sum(apart <= 2 * PASSING, axis=1) == 1)  # a series says how people move
-                if alone.any():
-                    held = np.isin(np.arange(len(people[person])), at)
-                    people[person] = passing(people[person], at[alone], wanted[alone], held)
-                people[person] = with_given(people[person], at, wanted)
-            for part in self.parts:
-                if isinstance(part, KnownFrames) and part.person == person and part.kept:
-                    people[person] = with_joints(people[person], part)
-        return super().duet(np.stack(people), lambda person: person)
 
 
 def with_given(positions: Array, frames: Array, given: Array) -> Array:
@@ -251,7 +237,7 @@ def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
     return time, (1 - ahead) * poses[i] + ahead * poses[i + 1] + bends
 
 
-def directed(model: DuetSpace, frames: int, parts: Sequence[Part], strictness: float = 0.0) -> Directed:
+def directed(model: DuetSpace, frames: int, parts: Sequence[Part], strictness: float = 0.0) -> Scene:
     """A scene of so many frames with what is given of it, and its draft.
 
     Soft poses are a draft where the network reads one and the plan is not wholly strict, and are held otherwise; free
@@ -264,12 +250,12 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part], strictness: f
     held = [part for part in parts if not (isinstance(part, KnownFrames) and part.free)]
     poses = hold_of(model, frames, held) if held and (strictness or not model.reads_known) else None
     if not model.reads_known:
-        return Directed(frames, poses, parts=held)
+        return Scene(frames, poses, parts=held)
     if strictness == 1:
-        return Directed(frames, poses, draft_of(model, frames, [p for p in parts if p not in held]), parts=held)
+        return Scene(frames, poses, draft_of(model, frames, [p for p in parts if p not in held]), parts=held)
     places = places_of(parts)
     hold, draft = hold_of(model, frames, places) if places else None, draft_of(model, frames, parts)
-    return Directed(frames, hold, draft, parts=places, poses=poses, strictness=strictness)
+    return Scene(frames, hold, draft, parts=places, poses=poses, strictness=strictness)
 
 
 def draft_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Tensor | None:

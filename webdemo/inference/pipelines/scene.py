@@ -34,7 +34,7 @@ from webdemo.inference.requests.plans import KeptPlan, WindowPlan
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 from webdemo.inference.story.request import SceneProgress, SceneRequest, window_seed, windows
 
-from .given import NAMES, Directed, directed
+from .given import NAMES, Scene, directed
 from .two_person import Conditioning, TwoPersonPipeline
 from .wishes import wishes
 
@@ -295,11 +295,11 @@ class Setting:
         frames = max(past + length + tail, round(SECONDS[0] * FPS))
         return cls(window, frames, (*parts, *plan.parts), placement, plan, request.strictness)
 
-    def scene(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> Directed:
+    def scene(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> Scene:
         """As the pipeline takes it."""
         return directed(pipeline.model, self.frames, self.parts, self.strictness)
 
-    def share(self, pipeline: TwoPersonPipeline[CompactInterGen], scene: Directed) -> float:
+    def share(self, pipeline: TwoPersonPipeline[CompactInterGen], scene: Scene) -> float:
         """The share of the new frames of its scene that the plan lays out, see :attr:`models.known.Hold.shares`."""
         if len(self.parts) > len(self.plan.parts):  # the frames around it lay out some, too
             scene = directed(pipeline.model, self.frames, self.plan.parts, self.strictness)
