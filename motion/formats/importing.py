@@ -69,11 +69,12 @@ class Imported:
         return to_smpl(Duet(self.people[0], self.people[1], **self.beside) if len(self.people) > 1 else self.people[0])
 
     def describe(self) -> str:
-        """One line, such as "22 joints matched, cm, Z up, 120 frames a second"."""
-        unit = "no unit (scaled to a person)" if self.unit == "none" else self.unit
+        """One line, such as "22 joints found; lengths in cm, Z is up, 120 frames a second"."""
+        unit = "without a unit, scaled to a person" if self.unit == "none" else f"in {self.unit}"
         order = "" if self.order is None else f" in the order of {ORDERS[self.order]}"
         count = f"{len(self.people)} people, " if len(self.people) > 2 else ""
-        return f"{count}{self.joints} joints matched{order}, {unit}, {self.up.upper()} up, {self.fps:g} frames a second"
+        found = f"{count}{self.joints} joints found{order}; lengths {unit}"
+        return f"{found}, {self.up.upper()} is up, {self.fps:g} frames a second"
 
 
 def import_motion(

@@ -49,7 +49,9 @@ def test_joints_stand_where_they_do_in_the_file(given: dict[str, Any]) -> None:
     np.testing.assert_allclose(found.positions[:, order], POSITIONS, atol=1e-4)
     clip = retarget(found, plant=False)
     assert np.linalg.norm(clip.positions - POSITIONS, axis=-1).max() < 0.06
-    assert import_motion(data, name="walk.glb").describe() == "22 joints matched, m, Y up, 30 frames a second"
+    assert (
+        import_motion(data, name="walk.glb").describe() == "22 joints found; lengths in m, Y is up, 30 frames a second"
+    )
 
 
 @pytest.mark.parametrize(("fps", "count", "rate"), [(24.0, 37, 24), (60.0, 15, 60), (120.0, 8, 120), (2.0, 436, 30)])

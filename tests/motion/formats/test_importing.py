@@ -27,7 +27,7 @@ def test_arrays_are_reported_and_kept_bit_for_bit() -> None:
     assert (found.up, found.unit, found.fps) == ("y", "m", 30.0)
     assert found.joints == 22
     assert found.motion.positions.tobytes() == standing().tobytes()
-    assert found.describe() == "22 joints matched, m, Y up, 30 frames a second"
+    assert found.describe() == "22 joints found; lengths in m, Y is up, 30 frames a second"
 
 
 @pytest.mark.parametrize(("unit", "metres"), [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("inch", 0.0254)])

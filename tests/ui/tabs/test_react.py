@@ -145,7 +145,7 @@ def test_errors_are_one_sentence_and_the_next_run_works(
 
 def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: Path) -> None:
     last = upload(tab, walker)[-1]
-    assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]
+    assert "22 joints found; lengths in m, Y is up, 30 frames a second" in last["found"]
     *_, again = [taken(tab.actor, u) for u in tab.actor.read_again(last["state"], "auto", 60, "auto", None)]
     assert "60 frames a second" in again["found"]
     assert again["state"].seconds == pytest.approx(2.0, abs=0.1)

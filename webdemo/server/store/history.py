@@ -202,7 +202,7 @@ class History:
     def _opened(self, run: Run) -> Opened:
         """A run with its result alone, not what it was made from."""
         if run.state != "done":
-            raise InputError(run.message or f"This run has no result: it is {run.state}.")
+            raise InputError(run.message or f"This run has no result ({run.state}).")
         return Opened(entry=entry_of(run), result=replace(self._read(run.id, fields_of(run.outcome)), run=run.id))
 
     @sentences()
@@ -232,7 +232,7 @@ class History:
         with self.database.session.begin() as session:
             row = self._own(session, run, owner)
             if row.state != "done":
-                raise InputError(f"This run has no result to show: it is {row.state}.")
+                raise InputError(f"This run has no result to show ({row.state}).")
             there = (Share.run_id == run, Share.public == public, Share.until > now)
             share = session.scalar(select(Share).where(*there)) or Share(key=secrets.token_urlsafe(18), public=public)
             share.run, share.until = row, now + days * DAY

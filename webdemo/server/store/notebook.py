@@ -154,7 +154,7 @@ class Notebook(History):
             for run in runs:
                 row = self._own(session, run, owner)
                 if row.state == "running":
-                    raise InputError("A run that goes on cannot be removed: cancel it first.")
+                    raise InputError("A run cannot be removed while it is being made: cancel it first.")
                 session.execute(update(Run).where(_with_parts(row.id)).values(removed=now))
         audit("runs-removed", runs=" ".join(runs), count=len(runs))
         return len(runs)
@@ -223,15 +223,16 @@ class Notebook(History):
         if not owner:
             raise InputError("There is no history here to import into: sign in or allow cookies first.")
         if len(files) > MOST_TAKEN:
-            raise InputError(f"{len(files)} files are too many at once: choose {MOST_TAKEN}.")
+            raise InputError(f"{len(files)} files are too many at once: choose {MOST_TAKEN} or fewer.")
         for number, file in enumerate(files):
             try:
                 room = self.storage.importable(owner, digest(address) if address else "")
                 if file.stat().st_size > room:
-                    raise InputError("your room is used up: remove runs of yours first")
+                    raise InputError("your room is used up: remove some of your runs first.")
                 self._take_in(owner, file, address)
             except InputError as error:
-                raise InputError(f"{number} of {len(files)} imported, then {file.name[:60]}: {error}") from None
+                before = f" {number} of the {len(files)} files were imported before it." if number else ""
+                raise InputError(f"{file.name[:60]} was not imported: {error}{before}") from None
         audit("import", count=len(files))
         return len(files)
 

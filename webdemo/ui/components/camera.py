@@ -41,5 +41,5 @@ def film_source(text: str | None) -> Source:
     landmarks, name = unpack_film(text)
     filmed = person_of(landmarks, name=name)
     sure = round(100 * float(filmed.confidence.mean()))
-    line = f"One person from video, {sure} % of the body seen, camera looks down {filmed.tilt:.0f}°"
+    line = f"One person in the video: {sure} % of the body is seen, and the camera looks down by {filmed.tilt:.0f}°"
     return Source(name, (filmed.person,), found=line, notes=filmed.notes)

@@ -144,7 +144,7 @@ class SourcePanel(ABC):
 
         def read() -> Source:
             if record is None:
-                raise InputError("There is no result yet: generate one first.")
+                raise InputError("There is no result yet: make one in any tab first.")
             return result_source(record.result, record.prompt)
 
         yield from self.load(read, at_end=self.take_at_end)
