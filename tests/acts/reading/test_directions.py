@@ -70,20 +70,6 @@ def test_a_text_is_read_alike_in_every_process() -> None:
     assert len(found) == 1 and "talk" in found.pop()
 
 
-@pytest.mark.parametrize(
-    ("text", "acts"),
-    [
-        ("A walks a circle around B.", ["a walk-around b"]),
-        ("Both raise the right arm in unison.", ["ab raise-arm", "ab unison"]),
-        ("They lift their left leg in canon.", ["a raise-leg", "b raise-leg"]),
-        ("They touch palms.", ["ab push-palms"]),
-    ],
-)
-def test_paths_and_ones_own_limbs(text: str, acts: list[str]) -> None:
-    found = read(text)
-    assert [" ".join(filter(None, ("".join(a.agents), a.act, a.patient))) for a in found.acts] == acts
-
-
 def test_who_mirrors_both_arms_raises_both() -> None:
     first, then = read("A raises both arms and B mirrors it.").acts
     assert (first.side, then.side, then.agents) == ("both", "both", ("b",))
@@ -104,25 +90,10 @@ def test_what_follows_on_a_touch(text: str, acts: list[str]) -> None:
     assert not found[1].already
 
 
-def test_a_woman_and_a_woman_are_two() -> None:
-    assert [act.agents for act in read("A woman and a woman dance.").acts] == [("a", "b")]
-
-
 @pytest.mark.parametrize(("text", "acts"), [("Two kids spin holding hands.", "ring")])
 def test_what_visitors_type(text: str, acts: str) -> None:
     found = read(text)
     assert found.acts[-1].act == acts and not found.unread
-
-
-@pytest.mark.parametrize(
-    ("text", "act"), [("push-ups", "push-ups"), ("synchronized jumping jacks", "jumping-jacks"), ("Slow bows.", "bow")]
-)
-def test_a_headline_is_done_by_both(text: str, act: str) -> None:
-    assert [(each.agents, each.act) for each in read(text).acts] == [(("a", "b"), act)]
-
-
-def test_a_pronoun_makes_no_headline() -> None:
-    assert [(each.agents, each.act) for each in read("He jumps.").acts] == [(("a",), "jump")]
 
 
 @pytest.mark.parametrize(

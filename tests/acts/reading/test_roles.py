@@ -74,6 +74,17 @@ def test_what_is_done_instead_is_all_that_is_done() -> None:
         ("A woman hugs a man and he waves", ["a hug b", "b wave a"]),
         ("A pushes B and he falls", ["a push b", "b fall-down"]),
         ("A and B hug and he waves", ["ab hug", "a wave b"]),
+        # paths, and one's own limbs
+        ("A walks a circle around B.", ["a walk-around b"]),
+        ("Both raise the right arm in unison.", ["ab raise-arm", "ab unison"]),
+        ("They lift their left leg in canon.", ["a raise-leg", "b raise-leg"]),
+        ("They touch palms.", ["ab push-palms"]),
+        # a headline is done by both
+        ("push-ups", ["ab push-ups"]),
+        ("synchronized jumping jacks", ["ab jumping-jacks"]),
+        ("Slow bows.", ["ab bow"]),
+        ("He jumps.", ["a jump"]),
+        ("A woman and a woman dance.", ["ab dance"]),
         # nothing slows, and somebody shakes hands
         ("He does slow arm circles.", ["a circle-arms"]),
         ("does slow arm circles", ["a circle-arms"]),
