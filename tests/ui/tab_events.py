@@ -33,5 +33,5 @@ def changes(names: Iterable[str], updates: Iterable[Any]) -> dict[str, Any]:
 
 def taken(panel: SourcePanel, updates: Mapping[Any, Any]) -> dict[str, Any]:
     """Updates of a panel by the names of its parts, without those that change nothing."""
-    names = {id(part): name for name, part in vars(panel).items()} | {id(panel.results.player): "player"}
+    names = {id(part): name for shown in (panel.results, panel) for name, part in vars(shown).items()}
     return {names[id(part)]: update for part, update in updates.items() if update != gr.skip()}

@@ -80,6 +80,7 @@ def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) 
     done = run(tab, {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"})
     took = [taken(tab.past, updates) for updates in tab.past.take_result(done["record"])][-1]
     assert took["state"].name == source.name, "not after what was after it"
+    assert took["readouts"] == "" and not took["under"]["visible"], "those of the result that has left the stage"
     assert took["marker"]["value"] == 3.0 and took["state"].seconds == 3.0
     again = run(tab, {"source": took["state"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"})
     (sample,) = again["player"]["value"]["samples"]

@@ -82,7 +82,7 @@ class SourcePanel(ABC):
         While it is read, ``go``, which runs something on it, cannot be pressed.
         """
         self.line, self.go = line, go
-        shown = [self.state, line, self.results.player, *self.more(), go]
+        shown = [self.state, line, self.results.player, self.results.under, self.results.readouts, *self.more(), go]
         self.load_options: dict[str, Any] = {
             "outputs": shown,
             "concurrency_limit": 2,
@@ -159,6 +159,7 @@ class SourcePanel(ABC):
         try:
             source = read()
             updates = {self.state: source, player: show(self.payload(source)), **self.described(source, at_end=at_end)}
+            updates |= {self.results.under: gr.update(visible=False), self.results.readouts: ""}  # of an earlier result
         except Exception as error:
             updates = {player: busy(""), **(self.gone() if fresh else {})}
             updates[self.line] = status(error_line(error), tone="error")
