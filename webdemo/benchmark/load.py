@@ -36,19 +36,15 @@ PROBE_EVERY = 1.0
 """Seconds between two looks at how quickly the server answers."""
 BETWEEN, MOST_POSES = 1 / 15, 15
 """Seconds between two messages of a live stream, and poses in each."""
+_RUNS = ("runs_lost", "runs_swapped", "runs_refused_or_failed")
 GOALS: dict[str, tuple[float, float]] = {
-    "runs_lost": (0, 0),
-    "runs_swapped": (0, 0),
-    "runs_refused_or_failed": (0, 0),
+    **{f"{when}{figure}": (0, 0) for figure in _RUNS for when in ("", "attacked_")},
     "log_lines_of_errors": (0, 0),
     "longest_wait_over_fair_share": (0, 3),
     "page_worst_seconds": (0, 1),
     "healthz_worst_seconds": (0, 1),
     "memory_last_over_first_quarter": (0, 1.05),
     "attacked_longest_wait_over_fair_share": (0, 3),
-    "attacked_runs_lost": (0, 0),
-    "attacked_runs_swapped": (0, 0),
-    "attacked_runs_refused_or_failed": (0, 0),
     "attacked_healthz_worst_seconds": (0, 1),
     "attacked_live_wait_over_fair_share": (0, 3),
     "attacked_live_frames_over_fair_share": (1 / 3, float("inf")),

@@ -1,4 +1,4 @@
-"""The commands that run a network: ``generate``, ``react`` and ``predict``."""
+"""The commands that run a network, ``generate``, ``react`` and ``predict``; and how any request is run."""
 
 from __future__ import annotations
 
@@ -140,9 +140,6 @@ def predict(options: argparse.Namespace) -> dict[str, Any]:
     assert isinstance(result, PredictResult)
     figures = {name: getattr(result, name) for name in ("past_frames", "error", "speed", "true_speed")}
     return with_notes(write_result(result, options.out) | figures, request.motion)
-
-
-# ---- running a request ---------------------------------------------------------------------------
 
 
 def check_out(path: Path) -> None:

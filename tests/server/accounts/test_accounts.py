@@ -124,7 +124,7 @@ def test_right_passwords_cost_no_tries(people: Accounts, clock: Clock) -> None:
 def test_a_name_is_slowed_down_for_all_addresses_together(people: Accounts, clock: Clock) -> None:
     known = people.known_browser("ada")
     guesses = [refused_for(people, "wrong horse", f"6.6.6.{i}") for i in range(accounts.NAME_TRIES + 20)]
-    assert guesses.count(0) == accounts.NAME_TRIES
+    assert guesses.count(0) == accounts.NAME_TRIES <= 100
     assert 0 < refused_for(people, "correct horse", "1.2.3.4") <= 10
     assert people.begin("ada", "correct horse", "1.2.3.4", known), "where she has signed in before, she still can"
     clock.now += 10

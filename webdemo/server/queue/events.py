@@ -183,10 +183,13 @@ class FairEvents(Queue):
                 continue
             self._answers.remove(answer)
             events.discard(answer.event)
+            if there:
+                self.bindings.forget(answer.event)
             if not events:
                 pending.pop(answer.session, None)
-                if there:
-                    del self.pending_messages_per_session[answer.session]
+                messages = self.pending_messages_per_session.get(answer.session)
+                while messages and not messages.empty():  # a stream that has begun waits for what follows
+                    messages.get_nowait()
 
 
 def _source(event: Event) -> str:
