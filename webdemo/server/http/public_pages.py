@@ -72,9 +72,6 @@ def _sent(page: str) -> Response:
     return HTMLResponse(page, headers={"Cache-Control": "no-store", "X-Robots-Tag": "noindex"})
 
 
-# ---- blind studies -------------------------------------------------------------------------------
-
-
 def study_routes(settings: Settings, studies: Studies) -> APIRouter:
     """``/study/KEY`` (the page), and POST to ``/study/KEY/next`` and ``…/vote/PAIR/ANSWER`` for its script."""
     router = APIRouter()
