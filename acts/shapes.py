@@ -17,7 +17,7 @@ Part = Literal["", "head", "shoulder", "back", "chest", "waist", "arm", "hand", 
 # The gestures of hands, the movements of legs, trunk and head, and the figures of whole bodies, by kind.
 _Held = Literal["high", "up", "ahead", "spread", "crossed", "behind", "around", "linked", "lowers", "bends", "prays"]
 _AtBody = Literal["hips", "chest", "belly", "head", "mouth", "blows", "ears", "eyes", "phone", "photo"]
-_Shown = Literal["salutes", "claps", "offers", "waves", "beckons", "points", "conducts", "pumps", "beats"]
+_Shown = Literal["salutes", "claps", "offers", "waves", "beckons", "points", "conducts", "pumps", "beats", "talks"]
 _Swung = Literal["fans", "flaps", "circles", "swings", "shakes", "rubs"]
 _Works = Literal["works", "drums", "types", "juggles", "dribbles", "knocks", "carries"]
 _Crafts = Literal["paints", "brushes", "hammers", "eats", "combs", "writes"]

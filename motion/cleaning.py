@@ -20,7 +20,7 @@ _LOOSE = 1.5
 _MAX_DRIFT = 0.25
 # What a correction may move a joint from frame to frame (metres).
 _MAX_STEP = 0.03
-_SINKS = 0.12
+_SINKS = 0.02
 """Metres by which a body goes down at most for its legs to reach."""
 _REST_ANKLE = (0.03, 0.09)
 _SOFT = 0.01

@@ -185,7 +185,7 @@ def loose(done: Done, idle: Collection[str]) -> frozenset[str]:
     for who in "ab":
         own = [(act, e) for act, e in done if who in act.agents]
         touched = any(reaches(act, e) for act, e in done if who not in act.agents)
-        free = who in idle or (bool(own) and all(leaves_hands(act, e) for act, e in own))
+        free = who in idle or all(leaves_hands(act, e) for act, e in own)
         if free and not touched:
             people.add(who)
     return frozenset(people)

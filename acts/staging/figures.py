@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from acts.shapes import Figure
 from motion import FPS
-from motion.smoothing import smoothstep
 from motion.vectors import Array
 
 from .figure_floor import grounded_poses
@@ -38,22 +37,9 @@ PAIRED = ("hip", "out", "turnout", "knee", "ankle", "arm", "side", "rotate", "el
 and turned in, an elbow bent, a shoulder raised; "free" is 1 for a leg that does not carry the body, as it swings past
 the floor. A number for both sides, or [left, right]."""
 NAMES = (*SINGLE, *METRES, *(f"{side}_{name}" for side in ("left", "right") for name in PAIRED))
-_SWAY = {"lean": 0.8, "twist": 1.5, "neck": 2.0, "look": 3.0, "tilt": 1.0, "arm": 2.5, "side": 2.0, "elbow": 2.5}
-"""Degrees by which parts of the body waver."""
-
-
-def _wavers(name: str) -> float:
-    return float(np.deg2rad(_SWAY.get(name.split("_")[-1], 0.0)))
-
-
 _ASIDE = tuple(NAMES.index(name) for name in ("roll", "yaw", "lean", "twist", "look", "tilt", "aside"))
 """Those that change their sign in a mirror."""
 _STANDS = {"hip": 3.4, "out": -1.1, "knee": 6.9, "ankle": -3.4, "side": 9.8, "elbow": 17.2}
-_LEFT_ARM = [NAMES.index(f"left_{name}") for name in ("arm", "side", "rotate", "elbow", "shrug")]
-_LAG = 0.05
-"""Seconds by which the left arm is behind the right one."""
-_WAVERS = np.array([_wavers(name) for name in NAMES])
-"""Radians by which each angle wavers."""
 BEGINS, RESTS = 0.3, 0.15
 """Seconds of a beat before a figure begins, and after it."""
 FASTEST, SLOWEST = 0.75, 1.25
@@ -94,7 +80,7 @@ def figures() -> Mapping[str, Keys]:
     }
 
 
-def figured(figure: Figure, place: Array, angle: float, frames: int, seed: int = 0) -> Array:
+def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
     """A person who does a figure through a beat of so many frames.
 
     Args:
@@ -102,7 +88,6 @@ def figured(figure: Figure, place: Array, angle: float, frames: int, seed: int =
         place: (2,) x and z of the pelvis in metres where they stand before.
         angle: heading in radians from +Z towards +X.
         frames: of the beat.
-        seed: draws how the body wavers.
 
     Returns:
         (frames, 22, 3) metres; the body is on the floor, and what stands on it does not glide.
@@ -115,26 +100,9 @@ def figured(figure: Figure, place: Array, angle: float, frames: int, seed: int =
         rows = _mirrored(rows)
     at = np.arange(frames) / FPS
     between = scipy.interpolate.PchipInterpolator(times, rows, axis=0)
-    course, later = (between(np.clip(at - lag, times[0], times[-1])) for lag in (0.0, _LAG))
-    stands = _upright(course)
-    course[:, _LEFT_ARM] += stands * (later - course)[:, _LEFT_ARM]
-    course += stands * _wavering(at, seed)
+    course = between(np.clip(at, times[0], times[-1]))
     course = scipy.ndimage.gaussian_filter1d(course, _ROUND, axis=0, mode="nearest")
     return grounded_poses(dict(zip(NAMES, course.T, strict=True)), place, angle)
-
-
-def _upright(course: Array) -> Array:
-    """(N, 1) 1 where the trunk is upright, 0 where hands may be on the floor, which are not to leave it."""
-    up = np.cos(course[:, NAMES.index("pitch")]) * np.cos(course[:, NAMES.index("roll")])
-    return np.asarray(smoothstep(up, 0.4, 0.85))[:, None]
-
-
-def _wavering(at: Array, seed: int) -> Array:
-    """Angles (N, angles) by which trunk and arms waver, each in its own time: nobody is as even as a drawing."""
-    dice = np.random.default_rng(seed)
-    periods, phases = dice.uniform(1.7, 4.3, len(NAMES)), dice.uniform(0.0, 2 * np.pi, len(NAMES))
-    angles: Array = np.sin(2 * np.pi * at[:, None] / periods + phases) * _WAVERS
-    return angles
 
 
 def _scheduled(course: Keys, times: int, length: float) -> tuple[Array, Array]:
@@ -206,7 +174,7 @@ def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Arra
         person: 0 for a, 1 for b.
         beat: the beat.
         last: (22, 3) the person before it; None in a first beat.
-        seed: draws how late they are, and how they waver.
+        seed: draws how late they are.
     """
     parts: list[Part] = []
     first = SETTLES // 2 if beat.start else 0
@@ -236,7 +204,7 @@ def _figure(score: Score, person: int, beat: Stretch, first: int, seed: int) -> 
     if count < SHORTEST:
         return np.zeros(0, dtype=int), np.zeros((0, len(ALL), 3))
     figure = figure.model_copy(update={"late": figure.late + late})
-    poses = figured(figure, beat.halt(person), angle, count, seed + person)
+    poses = figured(figure, beat.halt(person), angle, count)
     frames = np.union1d(np.arange(0, count, OFTEN), [count - 1])
     return frames + first, poses[frames]
 

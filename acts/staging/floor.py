@@ -131,7 +131,7 @@ def _moved(
             if direction(track.heading) @ to > ABEAM:  # it is not where the other stands
                 far = min(ACROSS, 0.6 * seconds * move.speed)
                 line = np.stack([here, here - far * to])
-                track.walk(line, _time(far, move.speed, 0.7 * seconds), evenly=True)
+                track.walk(line, _time(far, move.speed, 0.7 * seconds))
             track.stay(facing=True)
         case "turn":
             track.turn(2 * math.pi * move.turns * move.sense)
@@ -177,7 +177,7 @@ def _to(move: Move, track: Track, gap: float, to: Array, seconds: float, *, both
     way = (gap - near) / (2 if both else 1)
     if way > (0.05 if move.near else 0.25):
         line = np.stack([track.place, track.place + way * to])
-        track.walk(line, _time(way, move.speed, seconds), evenly=move.speed < RUN)
+        track.walk(line, _time(way, move.speed, seconds))
     if last:
         track.stay(facing=bool(move.near))
 

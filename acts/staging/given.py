@@ -20,14 +20,15 @@ from .beginnings import Room, Take, beginning, going, roomy, starting
 from .figures import figure_parts, figure_poses
 from .floor import plan
 from .gaits import STEPS, low_gait_parts, step_parts
-from .gestures import hand_parts, outer_hand_parts
+from .gestures import hand_parts, hands_of
 from .holds import hold_parts, pull_parts, twirl_parts
 from .lifts import Carrying
 from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
-from .places import Standing, Way2D
-from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, standing_by, upright
+from .places import EVENLY, Standing, Way2D
+from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, upright
 from .postures import bow_parts, posture_parts, postures
+from .recordings import Performance, performance, standing_by, walking
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
 from .touches import touch_parts
@@ -197,7 +198,7 @@ class _Beat:
         stands by has a place, and no pose. A jump is never a draft: of one, the network's feet stay on the floor.
         """
         score, seed = self.score, self.story.seed
-        gone = {move.person for move in moves if move.way not in ("stay", "back to back")}
+        gone = _gone(moves)
         parts: list[Part] = []
         posed: dict[int, Array] = {}
         for person, who in enumerate("ab"):
@@ -218,7 +219,9 @@ class _Beat:
             elif up and who in score.idle:
                 parts += _bystander_parts(person, stretch, seed)
             elif stays and up and (turned or who in score.gesturing):
-                parts += _bystander_parts(person, stretch, seed, all_but(HANDS))
+                gesture = score.gestures.get(who)
+                hands = [JOINT[f"{s}_{j}"] for s in hands_of(gesture) for j in ("elbow", "wrist")] if gesture else HANDS
+                parts += _bystander_parts(person, stretch, seed, all_but(hands), self.performance(person))
                 posed[person] = stands
             elif stays:
                 poses = self._postures(person, stretch)
@@ -240,7 +243,8 @@ class _Beat:
             lifted = self._postures(1 - "ab".index(score.pulls), stretch)
             parts += pull_parts(score.pulls, lifted, stretch, both=score.by_both_hands)
         gaits = {"ab".index(move.person): move.gait for move in moves if move.gait}
-        free = not (score.touch or score.joined or score.linked or score.strike)
+        alone = not (score.touch or score.joined or score.strike)
+        free = alone and not score.linked
         for person, way in ways.items():
             if (gait := gaits.get(person)) is None:
                 parts += stretch.known_way(_until_posed(way, hand, stretch))
@@ -248,8 +252,10 @@ class _Beat:
                 parts += softened(low_gait_parts(gait, person, self.down, stretch))
             else:
                 parts += softened(step_parts(gait, person, score, stretch)) if free else stretch.known_way(way)
-            if free and gait is None and "ab"[person] in score.loose:
-                parts += _waiting_parts(person, stretch, self.story.seed, (*TRUNK, *HANDS))
+            if alone and gait is None:
+                loose = "ab"[person] in score.loose
+                joints = () if loose else all_but(HANDS)
+                parts += _going_parts(person, stretch, self.story.seed, joints, waits=free and loose)
         leads = "ring" if any(move.backwards for move in moves) and score.by_both_hands else ""
         if (hold := score.hold or leads) and len(ways) == 2:
             parts += hold_parts(hold, stretch)
@@ -257,12 +263,20 @@ class _Beat:
             parts += twirl_parts(stretch)
         if (strike := score.strike) is not None and "ab".index(strike.turns[0]) in ways:
             parts += strike_parts(strike, score, stretch)
-        before = self.scene[:, self.start - 1].astype(np.float64) if self.start else None
-        for arms in hand_parts(score, moves, posed, stretch, before, self.story.seed):
+        whole = {who for person, who in enumerate("ab") if who not in _gone(moves) and self.performance(person)}
+        gestures = {who: gesture for who, gesture in score.gestures.items() if who not in whole}
+        for arms in hand_parts(replace(score, gestures=gestures), moves, posed, stretch, self.story.seed):
             if score.lift is None or "ab"[arms.person] == score.lift.carrier:
                 parts.append(arms)
-        parts += softened(outer_hand_parts(score, moves, stretch))
         return parts
+
+    def performance(self, person: int) -> Performance | None:
+        """The recorded gesture of a person on their feet who does nothing else; None of others."""
+        who, score = "ab"[person], self.score
+        if person in self.down or who not in score.gesturing - {*score.limbs, *score.figures, *score.bows}:
+            return None
+        frames = self.story.edges[self.window.beat + 1] - self.start
+        return performance(score.gestures, person, frames, self.story.seed)
 
     def _postures(self, person: int, stretch: Stretch) -> list[Pose]:
         """The poses by which a person's posture is held."""
@@ -307,30 +321,50 @@ def _keeps_back(score: Score, who: str) -> bool:
     return bool(score.side) or (touch is not None and touch.behind and touch.person != who)
 
 
-def _bystander_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int] = ()) -> list[Part]:
-    """The place and the heading of a person who stays, and a recorded draft of some joints, of all by default."""
-    frames = stretch.every(_DRAFTED, SETTLES if stretch.start else 0)
+def _gone(moves: Sequence[Move]) -> set[str]:
+    """The people who leave their place."""
+    return {move.person for move in moves if move.way not in ("stay", "back to back")}
+
+
+def _bystander_parts(
+    person: int, stretch: Stretch, seed: int, joints: Sequence[int] = (), gesture: Performance | None = None
+) -> list[Part]:
+    """The place and the heading of a person who stays, and a recorded draft of some joints, of all by default.
+
+    Of somebody with a recorded gesture the other joints are those of the hands that make it, which the plan may hold.
+    """
+    spacing, settles = (_POSED, SETTLES // 2) if gesture else (_DRAFTED, SETTLES)
+    frames = stretch.every(spacing, settles if stretch.start else 0)
     if not len(frames):
         return []
     angle = float(stretch.stand.headings[person])
     poses = standing_by(stretch.halt(person), angle, frames + stretch.start, seed=2 * seed + person)
-    at = np.isin(frames, stretch.every(2 * _DRAFTED, SETTLES if stretch.start else 0))
+    hands: list[Part] = []
+    if gesture is not None:
+        poses = gesture.over(poses, frames / FPS, angle)
+        shown = gesture.share(frames / FPS) > 0
+        if shown.any():
+            hands = softened([stretch.known(person, frames[shown], poses[shown], all_but(joints))])
+    at = np.isin(frames, stretch.every(2 * spacing, settles if stretch.start else 0))
     way = Way2D(person, frames[at].tolist(), poses[at, 0][:, [0, 2]], np.full(at.sum(), angle))
     draft = stretch.known(person, frames, poses, joints or range(len(JOINT)))
-    return [*stretch.known_way(way), replace(draft, soft=True, free=True)]
+    return [*stretch.known_way(way), replace(draft, soft=True, free=True), *hands]
 
 
-def _waiting_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int]) -> list[Part]:
-    """A recorded draft of some joints of somebody with a way, for as long as it leaves them where they are."""
-    course, at = stretch.course(person), stretch.every(_DRAFTED)
-    around = np.clip(at + np.array([[-_RESTS], [_RESTS]]), 0, stretch.frames - 1)
-    first, last = course.places[around]
-    moved, turned = np.linalg.norm(last - first, axis=-1), np.ptp(course.headings[around], axis=0)
-    at = at[(moved < _STAYS) & (turned < _FACES)]
-    if len(at) < 2:
-        return []
-    poses = standing_by(course.places[at], course.headings[at], at + stretch.start, seed=2 * seed + person)
-    return [replace(stretch.known(person, at, poses, joints), soft=True, free=True)]
+def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int], *, waits: bool) -> list[Part]:
+    """A recorded draft of somebody with a way: of some joints where they walk or run ahead, and where they ``wait``."""
+    course, own = stretch.course(person), 2 * seed + person
+    at = stretch.every(EVENLY)
+    walks, poses = walking(course, own)
+    parts = [(at[walks[at]], poses, joints)]
+    if waits:
+        around = np.clip(at + np.array([[-_RESTS], [_RESTS]]), 0, stretch.frames - 1)
+        first, last = course.places[around]
+        moved, turned = np.linalg.norm(last - first, axis=-1), np.ptp(course.headings[around], axis=0)
+        rests = at[(moved < _STAYS) & (turned < _FACES)]
+        waiting = standing_by(course.places, course.headings, np.arange(stretch.frames) + stretch.start, own)
+        parts.append((rests, waiting, (*TRUNK, *HANDS)))
+    return [replace(stretch.known(person, f, p[f], j), soft=True, free=True) for f, p, j in parts if len(f) > 1]
 
 
 def _statue_parts(person: int, stretch: Stretch) -> list[Part]:

@@ -18,7 +18,8 @@ from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
 from motion.vectors import Array
 
-from .poses import ALL, HANDS, JOINT, SOLE, STANDS, TOES, TRUNK, Turns, about, all_but, poses_of, standing_by, turns_of
+from .poses import ALL, HANDS, JOINT, SOLE, STANDS, TOES, TRUNK, Turns, about, all_but, poses_of, turns_of
+from .recordings import standing_by
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
 

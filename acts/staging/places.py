@@ -115,9 +115,9 @@ def bearing(line: Array) -> float:
     return math.atan2(line[0], line[1])
 
 
-def direction(heading: float) -> Array:
-    """The unit vector (x, z) of a heading in radians from +Z towards +X."""
-    return np.array([math.sin(heading), math.cos(heading)])
+def direction(heading: float | Array) -> Array:
+    """The unit vectors (…, 2), x and z, of headings (…) in radians from +Z towards +X."""
+    return np.stack([np.sin(heading), np.cos(heading)], axis=-1)
 
 
 # ---- tracks: the way of one person over the floor of a beat, laid out move by move --------------------
@@ -127,12 +127,12 @@ MOST = 2.6
 """Metres a second of the fastest run that is planned."""
 TURNING = 0.9
 """Seconds of a half turn."""
-EVENLY = 8
-"""Frames between two given places of a walk whose pace is given: at every other knot of the network."""
+EVENLY = 4
+"""Frames between two given places of somebody who walks: at every knot of the network, which otherwise surges."""
 EASE = 0.5
 """Seconds in which a walk gets up its speed, and slows down again."""
 EVERY = 30
-"""Frames between two given places."""
+"""Frames between two given places of somebody who stays."""
 STEP = math.pi / 3
 """Radians of a turn between two given headings."""
 
@@ -148,7 +148,7 @@ class Track:
         headings: (T,) radians; NaN where they may face anywhere.
         frame: the first frame that is not laid out yet.
         going: (2,) unit direction of a walk side by side that they are on; zero if there was none.
-        dense: frames whose places are given beside those of every way.
+        dense: frames of walks whose places are given.
     """
 
     place: Array
@@ -159,23 +159,19 @@ class Track:
     going: Array = field(default_factory=lambda: np.zeros(2))
     dense: set[int] = field(default_factory=set)
 
-    def walk(self, line: Array, seconds: float, *, heading: float | None = None, evenly: bool = False) -> None:
-        """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says.
-
-        Places of a walk are given every second or so. Where it ends there, a network that is late would surge: a way
-        gone ``evenly`` has them every :data:`EVENLY` frames.
-        """
+    def walk(self, line: Array, seconds: float, *, heading: float | None = None) -> None:
+        """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says."""
         frames = max(1, min(round(seconds * FPS), len(self.places) - self.frame))
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
         time = np.arange(1, frames + 1) / frames
         done = eased(time, EASE / max(seconds, 1e-6))
-        far = min(along[-1], MOST * frames / FPS)
+        share = min(EASE / max(seconds, 1e-6), 0.5)
+        far = min(along[-1], MOST * frames / FPS * min(1.5 * (1 - share), 1.0))
         at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
         stop = self.frame + frames
         self.places[self.frame : stop] = at
-        if evenly:
-            self.dense.update(range(self.frame + EVENLY, stop, EVENLY))
+        self.dense.update(range(self.frame + EVENLY, stop, EVENLY))
         if heading is None:
             ahead = np.diff(np.concatenate([self.place[None], at]), axis=0)
             facing = np.arctan2(ahead[:, 0], ahead[:, 1])
@@ -194,6 +190,7 @@ class Track:
         facing, moving = np.arctan2(steps[:, 0], steps[:, 1]), np.linalg.norm(steps, axis=1) > 2e-3
         facing = filled(facing, moving, self.heading)
         self.places[self.frame : stop] = places
+        self.dense.update(range(self.frame + EVENLY, stop, EVENLY))
         self.headings[self.frame : stop] = self._turned_into(np.unwrap(facing))
         self.place, self.heading, self.frame = places[-1], float(self.headings[stop - 1]), stop
 
@@ -252,7 +249,7 @@ class Track:
 
 
 def sampled(who: int, track: Track, *, first: bool) -> Way2D | None:
-    """The way at every :data:`EVERY` frames and at the last one that is planned; also where it begins, if ``first``."""
+    """The way at :data:`EVERY` frames, dense ones and the last that is planned; with ``first``, where it begins."""
     known = np.flatnonzero(np.isfinite(track.places[:, 0]))
     if not len(known):
         return None

@@ -40,10 +40,10 @@ from .poses import (
     lying,
     rising,
     seated,
-    standing_by,
     stooping,
     upright,
 )
+from .recordings import standing_by
 from .score import Change, Score, at_start
 from .window import SETTLES, Part, Stretch, late_by
 

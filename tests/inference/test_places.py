@@ -55,7 +55,7 @@ def test_a_path_that_begins_elsewhere_is_run_to(follower: Follower, person: str)
 
 
 def test_a_path_that_nobody_gets_to_is_said_and_not_jumped_to(follower: Follower) -> None:
-    drawn = path("a", (2.1, 6.0, 0.0), (3.0, 6.0, 1.0))
+    drawn = path("a", (5.0, 8.0, -7.5), (5.9, 8.0, -8.0))
     found = follower.scene(SceneRequest(beats=WAVES, motion=standing(), paths=(drawn,), planned=False))
     assert speeds(found.duets[0].positions).max() < 3.1
     assert any("they cannot be on it in that time" in note for note in found.notes)

@@ -33,7 +33,7 @@ def test_a_person_does_a_handstand_and_the_other_stands_by(engine: Engine) -> No
     found = made(engine, "Person A does a handstand.", seconds=5.0)
     assert (found[0][:, FEET, 1].min(axis=1) > 1.5).sum() > 20
     figure = Figure(figure="handstand", late=late_by(QUICK["seed"], 0))
-    wanted = figured(figure, np.zeros(2), 0.0, 150, seed=QUICK["seed"])
+    wanted = figured(figure, np.zeros(2), 0.0, 150)
     wanted += (found[0, 0, FEET] - wanted[0, FEET]).mean(axis=0)
     assert np.abs(found[0] - wanted).max() < 0.03, "no clean-up plants what is given"
     assert heights(found, 1).min() > 0.85
@@ -44,7 +44,7 @@ def test_a_person_does_a_handstand_and_the_other_stands_by(engine: Engine) -> No
 def test_arms_that_are_lowered_were_up(engine: Engine) -> None:
     found = made(engine, "Person A lowers both arms.", seconds=3.0)
     up = found[0][:, WRISTS, 1] - found[0][:, SHOULDERS, 1]
-    assert up[0].min() > 0.3 and up[-10:].max() < -0.3
+    assert up[0].min() > 0.2 and up[-10:].max() < -0.3
 
 
 def test_two_who_carry_a_table_face_each_other_and_walk_one_way(engine: Engine) -> None:

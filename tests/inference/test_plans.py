@@ -223,7 +223,7 @@ def damaged(change: str) -> dict[str, Any]:
         "plan['beats'] = 'x'",
         "plan['alone'] = ['']",
         "plan['notes'] = [3]",
-        "plan['finishes'] = [{'loose': 'c'}]",
+        "plan['finishes'] = [{'held': 'c'}]",
         "part['frames'] = [1, 1]",
         "part['frames'] = [-1, 2]",
         "part['frames'] = [True, 2]",

@@ -34,7 +34,7 @@ def from_shell(task: Any, model: str) -> int | None:
 def test_a_sentence_has_as_many_steps_everywhere() -> None:
     shell = GenerateRequest(prompt="They wave.", steps=from_shell("generate", "intergen"))  # type: ignore[arg-type]
     python, story = GenerateRequest(prompt="They wave."), SceneRequest(**read_story(STORY))
-    page = GenerateTab.asked_by("intergen")[4]["value"]
+    page = GenerateTab.asked_by("intergen")[3]["value"]
     assert {shell.steps, python.steps, story.steps, page, FAST, DEFAULT_STEPS} == {8}
 
 
@@ -42,7 +42,7 @@ def test_a_sentence_has_as_many_steps_everywhere() -> None:
 def test_a_generator_has_its_own_steps_everywhere(name: str) -> None:
     own = method(name).steps
     assert GenerateRequest(prompt="They wave.", model=name).steps == own
-    assert GenerateTab.asked_by(name)[4]["value"] == own
+    assert GenerateTab.asked_by(name)[3]["value"] == own
     assert from_shell("generate", name) in (None, own)
 
 

@@ -118,21 +118,7 @@ def test_there_is_no_time_for_a_figure_that_is_begun_and_taken_back() -> None:
     assert np.abs(poses[-1, 0] - poses[0, 0]).max() < 0.1
 
 
-def test_no_arm_is_the_mirror_image_of_the_other() -> None:
-    left, right = (made("jumping-jacks")[:, hand] for hand in HANDS)
-    gap = np.linalg.norm(left - right * [-1.0, 1.0, 1.0], axis=1)
-    assert 0.02 < gap.mean() < 0.15
-
-
 def test_a_person_who_follows_the_other_is_as_late_as_said() -> None:
     first, second = made("phrase", 6.0, early=1.0), made("phrase", 6.0, late=1.0)
     assert np.abs(second[30:] - first[:-30]).mean() < 0.03
     assert np.abs(second - first).mean() > 0.03
-
-
-def test_each_seed_wavers_in_its_own_way_with_hands_in_the_air_alone() -> None:
-    one, other = (figured(Figure(figure="handstand"), np.zeros(2), 0.0, 150, seed) for seed in (1, 2))
-    apart = np.linalg.norm(one - other, axis=-1)
-    assert apart[:, HANDS].max() > 0.01 and apart[:, FEET][:20].max() < 1e-3
-    down = (one[:, HANDS, 1] < 0.075).all(axis=1)
-    assert apart[down][:, HANDS].max() < 0.03

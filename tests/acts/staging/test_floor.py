@@ -49,12 +49,12 @@ def test_those_who_meet_stay_as_near_as_what_they_do_then_needs(words: str, near
     assert abs(gaps(found)[-1] - near) < 0.05
 
 
-@pytest.mark.parametrize(("words", "evenly"), [("They walk up to each other.", True), ("They part.", False)])
-def test_the_pace_of_a_walk_that_ends_before_the_other_is_given(words: str, evenly: bool) -> None:
+@pytest.mark.parametrize("words", ["They walk up to each other.", "They part."])
+def test_the_pace_of_a_walk_is_given(words: str) -> None:
     _, found = ways(words, 5.0)
     for way in found.values():
         moving = np.linalg.norm(np.diff(way.places, axis=0), axis=1) > 0.03
-        assert bool(np.diff(way.frames)[moving].max() <= EVENLY) is evenly
+        assert np.diff(way.frames)[moving].max() <= EVENLY
 
 
 def test_those_who_part_turn_and_get_away_but_not_out_of_sight() -> None:
@@ -262,7 +262,8 @@ def test_who_runs_away_gets_up_to_the_speed_of_a_run() -> None:
 
 def test_who_comes_up_and_walks_past_does_not_stop_on_the_way() -> None:
     past = plan((Move("a", "to"), Move("a", "past"), Move("b", "stay")), BEHIND_B, 150)[0]
-    assert np.diff(past.places[:, 1]).min() > 0.2
+    speed = np.diff(past.places[:, 1]) / np.diff(past.frames) * FPS
+    assert speed[5:-5].min() > 0.5
 
 
 def test_who_overtakes_comes_from_behind_and_ends_ahead_of_a_person_who_walks_on() -> None:

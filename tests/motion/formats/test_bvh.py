@@ -94,7 +94,7 @@ def test_who_is_down_all_the_time_is_not_stood_up(kind, rig, z_up):
     content = bvh_text(down(kind), root, RIGS[rig], z_up=z_up).encode()
     found = import_motion(content, name="down.bvh")
     assert found.up == ("z" if z_up else "y"), "the rest pose stands along it"
-    assert f"{found.up.upper()} up" in found.describe()
+    assert f"{found.up.upper()} is up" in found.describe()
     positions = found.people[0].positions
     assert positions[..., 1].max() < 0.9 and positions[:, 0, 1].max() < 0.7
     long = positions[0, SMPL22.index("neck")] - positions[0, 0]

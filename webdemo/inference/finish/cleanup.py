@@ -15,7 +15,7 @@ from motion.limbs import open_limb, solve_two_bones, steadied
 from motion.metrics import compare
 from motion.skeleton import ARMS, LEGS
 from motion.smoothing import eased_marks, least_jerk, smoothstep
-from motion.swings import above_floor, lift_swinging_feet, swinging
+from motion.swings import above_floor, lift_swinging_feet
 from motion.touch.apart import bodies_apart, out_of_the_way
 from motion.touch.arms import arms_apart, embraced
 from motion.touch.hands import backs_straight, hands_clasped, palms_met
@@ -209,25 +209,22 @@ EASES = 20
 """Frames over which a finish begins and ends: beside beats without it, and beside frames that are kept."""
 
 
-def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
+def finished(request: SceneRequest, scene: Array) -> Array:
     """A scene as it is shown.
 
     Args:
         request: the scene's request.
         scene: (2, T, 22, 3) metres, its windows joined; frames that are kept of a given motion stay as they are.
-        seed: draws how arms swing.
 
     Returns:
         (2, T, 22, 3) float32.
     """
     free = _made(request, scene.shape[1])
-    marks = np.zeros((4, scene.shape[1]), dtype=bool)  # palms meet, hands held; a and b loose
+    marks = np.zeros((2, scene.shape[1]), dtype=bool)  # palms meet, hands held
     for beat, finish in enumerate(finishes(request)):
-        asked = finish.reaching, finish.held, *(who in finish.loose for who in ROLES)
-        marks[:, request.edges[beat] : request.edges[beat + 1]] = np.array(asked)[:, None]
-    raised, held, *loose = np.stack([eased_marks(each, EASES) for each in marks]) * free
-    swung = np.stack([swinging(scene[i], FPS, loose[i], [seed, i]) for i in (0, 1)])
-    result = in_touch(swung, free, raised, held).astype(np.float32)
+        marks[:, request.edges[beat] : request.edges[beat + 1]] = np.array([finish.reaching, finish.held])[:, None]
+    raised, held = np.stack([eased_marks(each, EASES) for each in marks]) * free
+    result = in_touch(scene, free, raised, held).astype(np.float32)
     result[:, free <= 0] = scene[:, free <= 0]
     return result
 
@@ -242,8 +239,7 @@ def finishes(request: SceneRequest) -> tuple[BeatFinish, ...]:
 def finish_of(score: Score) -> BeatFinish:
     """The finish that a beat's words ask for."""
     around = any(gesture.gesture == "around" for gesture in score.gestures.values())
-    loose = "".join(sorted(score.loose - score.frozen))
-    return BeatFinish(bool(score.reaching), score.linked and not around, loose)
+    return BeatFinish(bool(score.reaching), score.linked and not around)
 
 
 def in_touch(scene: Array, free: Array, raised: Array, held: Array) -> Array:

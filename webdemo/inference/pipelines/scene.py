@@ -208,7 +208,7 @@ def _blank(request: SceneRequest) -> Array:
 
 def _duet(request: SceneRequest, scene: Array, sample: int) -> Duet:
     if request.cleanup and not (request.loop or request.poses):  # these stay as they are
-        scene = finished(request, scene, window_seed(request, sample, windows(request)[0]))
+        scene = finished(request, scene)
     if request.motion is None:
         return Duet.from_positions(scene, fps=FPS, roles=NAMES)
     return replace(request.motion.with_positions(scene), manifest=None)

@@ -38,7 +38,6 @@ Whole = Annotated[int, Field(ge=-_FARTHEST, le=_FARTHEST)]
 Number = Annotated[float, Field(ge=-_FARTHEST, le=_FARTHEST)]
 Text = Annotated[str, Field(max_length=20_000)]
 Notes = Annotated[tuple[Text, ...], Field(max_length=20)]
-Who = Annotated[str, Field(pattern="^a?b?$")]
 Frames = Annotated[list[Annotated[int, Field(ge=0, lt=400)]], Field(min_length=1, max_length=400)]
 """Frames of a window, with what it sees before and after."""
 Joints = Annotated[list[Annotated[int, Field(ge=0, lt=SMPL22.num_joints)]], Field(max_length=SMPL22.num_joints)]
@@ -160,12 +159,10 @@ class BeatFinish:
     Attributes:
         reaching: whether palms meet what they reach for.
         held: whether the two hold each other by the hand.
-        loose: whose ("", "a", "b" or "ab") arms have nothing to do.
     """
 
     reaching: bool = False
     held: bool = False
-    loose: Who = ""
 
 
 @dataclass(frozen=True, eq=False, config=_STRICT)

@@ -1,0 +1,172 @@
+"""Makes the recordings that acts are drafted from: ``python -m training.recordings --data DATA --out acts/recordings``.
+
+Of people who stand by, those of ReActIdle are taken in which the feet stay and the body lives: most of its people stand
+as still as they can. Of gestures, those in which the act's own rule finds it, evenly over manners and lengths.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from acts import Act, Plan
+from acts.checking import checked
+from acts.staging.recordings import RATE
+from motion import SMPL22, InputError
+from motion.formats.files import replacing
+from motion.metrics.sentences.joints import Motion
+from motion.transforms import canonicalize, heading, leading_wrist, mirrored, resample, turn
+from motion.vectors import Array
+from training.core.shell import exit_code
+
+from .corpus.cues import SourceClip
+from .corpus.sources import FPS, load_sources
+
+STILL = 0.2
+"""Metres a second: slower than that in all joints, a body is still."""
+MOST_STILL, MOST_STEPS = 0.6, 0.06
+"""Shares of the frames in which the body is still, and in which a foot moves, at most."""
+PIECE = 180
+"""Frames of a piece of a recording."""
+_FEET = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("ankle", "foot")]
+SHOWN = {
+    "waves": ("wave", ("wave", "bye")),
+    "up": ("raise-arm", ("raise-hand",)),
+    "talks": ("talk", ("guide", "respond", "talking")),
+}
+"""Gestures, each with the act whose rule finds it and the actions of its recordings."""
+PLAIN = ("normal", "active", "feminine", "masculine", "youthful", "happy", "proud", "musical", "angry")
+"""Manners that suit an act of which none is told."""
+MOST = 18
+"""Recordings of a gesture with the same hands."""
+GAITS = 24
+"""Walks, and as many runs."""
+STRAIGHT, STRIDES, ALIKE = 0.7, (24, 100), 0.2
+"""Radians by which somebody turns in a gait at most, frames of its strides, and metres between its ends at most."""
+SHORTEST = 45
+"""Frames of a recording of a gesture that goes on, at least."""
+STAYS, FACES = 0.45, 0.9
+"""Metres and radians by which somebody who gestures on the spot moves and turns, at most."""
+NECK = SMPL22.index("neck")
+WRISTS, SHOULDERS = ([SMPL22.index(f"{side}_{j}") for side in ("left", "right")] for j in ("wrist", "shoulder"))
+LEANS, RAISED = 0.25, 0.1
+"""Metres of the neck beside the pelvis, at most, and of a waving hand over the shoulder, at least."""
+
+
+def lively(positions: Array) -> bool:
+    """True for a person (T, 22, 3) who moves while their feet stay."""
+    speeds = np.linalg.norm(np.diff(positions.astype(float), axis=0), axis=-1) * FPS
+    still, steps = (speeds.max(-1) < STILL).mean(), (speeds[:, _FEET].max(-1) > STILL).mean()
+    return bool(still < MOST_STILL and steps < MOST_STEPS)
+
+
+def shows(entry: str, side: str, positions: Array) -> bool:
+    """True for a person (T, 22, 3) on the spot in whom an act's rule finds it, done to somebody in front of them."""
+    way, turned = positions[:, 0][:, [0, 2]], np.unwrap(heading(positions))
+    leans = np.linalg.norm((positions[:, NECK] - positions[:, 0])[:, [0, 2]], axis=-1)
+    if np.ptp(way, axis=0).max() > STAYS or np.ptp(turned) > FACES or leans.max() > LEANS:
+        return False
+    other = np.array([0.0, 0.0, 1.5]) + turn(positions[:1].repeat(len(positions), axis=0), np.pi)
+    act = Act.model_validate({"id": "1", "act": entry, "agents": ("a",), "side": side or None})
+    over = positions[:, WRISTS, 1] - positions[:, SHOULDERS, 1]
+    if entry == "wave" and np.median(over.min(axis=1) if side == "both" else over[:, 1]) < RAISED:
+        return False
+    return checked(Plan(acts=(act,)), Motion(np.stack([positions, other]), FPS))[0].done is True
+
+
+def gestures(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
+    """Names and positions (T, 22, 3) of the recordings of gestures: by the right hand, or by both."""
+    for gesture, (entry, actions) in SHOWN.items():
+        taken: dict[tuple[str, str], list[Array]] = defaultdict(list)
+        for clip in clips:
+            lasts = gesture == "up" or len(clip.positions) >= SHORTEST
+            if clip.action in actions and clip.style in PLAIN and lasts:
+                positions = clip.positions.astype(np.float64)
+                side = "both" if gesture == "talks" else clip.side or leading_wrist(positions) or "both"
+                if side == "left":
+                    positions, side = mirrored(positions), "right"
+                if shows(entry, "" if gesture == "talks" else side, positions):
+                    taken[side, clip.style].append(positions)
+        for side in ("right", "both"):
+            styles = [sorted(own, key=len) for (hands, _), own in sorted(taken.items()) if hands == side]
+            each = -(-MOST // max(len(styles), 1))
+            kept = [own[i] for own in styles for i in np.unique(np.linspace(0, len(own) - 1, each).round().astype(int))]
+            yield from ((f"{gesture}-{side}-{i}", canonicalize(positions)) for i, positions in enumerate(kept))
+
+
+def gaits(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
+    """Names and positions (T, 22, 3) of walks and runs straight ahead, each a few strides that end as they begin."""
+    for action in ("walk", "run"):
+        loops = []
+        for clip in clips:
+            if clip.action == action and clip.style in PLAIN and len(clip.positions) >= SHORTEST:
+                loop = looped(canonicalize(clip.positions.astype(np.float64)))
+                if loop is not None:
+                    loops.append(loop)
+        loops.sort(key=lambda loop: float(loop[-1, 0, 2]) / len(loop))
+        kept = np.unique(np.linspace(0, len(loops) - 1, GAITS).round().astype(int))
+        yield from ((f"{action}-{i}", loops[at]) for i, at in enumerate(kept))
+
+
+def looped(positions: Array) -> Array | None:
+    """The strides of a gait (T, 22, 3) between the two moments that look most alike; None of one that is not straight.
+
+    The pelvis goes along +Z, and what is left between the two moments is spread over the strides.
+    """
+    turned = heading(positions)
+    if np.ptp(np.unwrap(turned)) > STRAIGHT:
+        return None
+    poses = turn(positions, -float(np.median(turned)))
+    left, right = (poses[:, SMPL22.index(f"{side}_ankle"), 2] for side in ("left", "right"))
+    passes = np.flatnonzero((left[:-1] < right[:-1]) & (left[1:] >= right[1:])) + 1
+    pelvis = poses[:, :1] * [1.0, 0.0, 1.0]
+    local = poses - pelvis
+    pairs = [(i, j) for i in passes for j in passes if STRIDES[0] <= j - i <= STRIDES[1]]
+    if not pairs:
+        return None
+    first, last = min(pairs, key=lambda pair: float(np.abs(local[pair[0]] - local[pair[1]]).max()))
+    if np.abs(local[first] - local[last]).max() > ALIKE:
+        return None
+    share = np.linspace(0.0, 1.0, last - first + 1)[:, None, None]
+    loop = local[first : last + 1] - share * (local[last] - local[first])
+    loop[..., 2] += np.maximum.accumulate(pelvis[first : last + 1, :, 2] - pelvis[first, 0, 2])
+    return loop
+
+
+def bystanders(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
+    """Names and positions (T, 22, 3) of the recordings of people who stand by."""
+    for i, clip in enumerate(clips):
+        for start in range(0, len(clip.positions) - PIECE + 1, PIECE) if clip.dataset == "reactidle" else ():
+            piece = clip.positions[start : start + PIECE]
+            if lively(piece):
+                yield f"{clip.source}_{i}_{start}", canonicalize(piece)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    parser = argparse.ArgumentParser(prog="python -m training.recordings", description=__doc__)
+    parser.add_argument("--data", type=Path, required=True, help="folder of the data sets")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the recordings")
+    options = parser.parse_args(argv)
+
+    def job() -> None:
+        clips = load_sources(options.data)
+        options.out.mkdir(parents=True, exist_ok=True)
+        for name, chosen in (("idle", bystanders), ("gestures", gestures), ("gaits", gaits)):
+            kept = {each: resample(positions, FPS, RATE) for each, positions in chosen(clips)}
+            if not kept:
+                raise InputError(f"{options.data} holds no recordings for {name}: unpack ReActIdle and Bandai Namco's.")
+            with replacing(options.out / f"{name}.npz") as temporary, temporary.open("wb") as file:
+                poses = {each: np.rint(1000 * positions).astype(np.int16) for each, positions in kept.items()}
+                np.savez_compressed(file, **poses)
+            print(f"{name}: {len(kept)} recordings, {sum(map(len, kept.values())) / RATE:.0f} s")
+
+    return exit_code(job)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
