@@ -41,10 +41,8 @@ SHOWN = {
 """Gestures, each with the act whose rule finds it and the actions of its recordings."""
 PLAIN = ("normal", "active", "feminine", "masculine", "youthful", "happy", "proud", "musical", "angry")
 """Manners that suit an act of which none is told."""
-MOST = 18
-"""Recordings of a gesture with the same hands."""
-GAITS = 24
-"""Walks, and as many runs."""
+MOST, GAITS = 18, 24
+"""Recordings of a gesture with the same hands, and of walks and of runs."""
 STRAIGHT, STRIDES, ALIKE = 0.7, (24, 100), 0.2
 """Radians by which somebody turns in a gait at most, frames of its strides, and metres between its ends at most."""
 SHORTEST = 45

@@ -1,4 +1,4 @@
-"""Recorded people who stand by and gesture: drafts that the network makes its motion from.
+"""Recorded people who stand by, walk, run and gesture: drafts that the network makes its motion from.
 
 A gesture is a take of recorded people, chosen by the seed: a hand that goes up, what it does there, and the way down.
 What it does is played to and fro as long as the gesture lasts.

@@ -130,8 +130,9 @@ class ReactTab(JobTab):
         )
 
     def restored(self) -> Sequence[Any]:
-        """The file, how it was read, the line on the method and whether it can stream."""
-        return [self.actor.file, self.actor.animation, *self.actor.known, *self.actor.more(), self.about, self.stream]
+        """The file, how it was read, the pace, the line on the method and whether it can stream."""
+        file, more = [self.actor.file, self.actor.animation, *self.actor.known], self.actor.more()
+        return [*file, *more, self.sampling.pace, self.about, self.stream]
 
     # ---- events ----------------------------------------------------------------------------------
 
