@@ -11,7 +11,7 @@ from motion.footsteps import pivoting, stepping, with_feet
 from motion.metrics.quality import joint_speeds, naturalness
 from motion.smoothing import minimum_jerk
 from motion.transforms import facing, heading_matrix
-from webdemo.inference.finish.cleanup import on_constant_bones
+from webdemo.inference.finish.cleanup import clean_person, on_constant_bones
 
 from .bodies import FPS
 
@@ -87,6 +87,11 @@ def test_no_legs_are_crossed_in_a_turn(angle: float) -> None:
     parents, children = np.array(SMPL22.bones).T
     lengths = [np.linalg.norm(each[:, children] - each[:, parents], axis=-1) for each in (before, found)]
     np.testing.assert_allclose(*lengths, atol=1e-6)
+
+
+def test_the_clean_up_uncrosses_the_legs_of_who_turns() -> None:
+    person = turned(np.pi)
+    assert apart(person).min() < -0.05 and apart(clean_person(person)).min() > 0.0
 
 
 def test_one_foot_stands_while_the_other_steps_and_the_inner_one_goes_first() -> None:
