@@ -22,7 +22,7 @@ from webdemo.server.settings import Settings
 
 from .lab import ROOT, add_accounts, stub_module
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("own_temporary")]
 
 
 @pytest.fixture(scope="module")

@@ -28,7 +28,7 @@ from webdemo.ui.page import build_page, launch_options
 from .stub_engine import StubEngine, walking
 from .stub_page import stub_context
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("own_temporary")]
 
 
 @pytest.fixture(scope="module")
