@@ -108,7 +108,8 @@ class Thing:
                 f"{rotations.shape}."
             )
         square = np.swapaxes(rotations, 1, 2) @ rotations - np.eye(3, dtype=np.float32)
-        if not np.isfinite(places).all() or not np.abs(square).max(initial=0.0) < 0.01:
+        turned = np.abs(square).max(initial=0.0) < 0.01 and (np.linalg.det(rotations) > 0).all()
+        if not np.isfinite(places).all() or not turned:
             raise InputError("The track of a thing holds places that are not finite, or matrices that do not rotate.")
         object.__setattr__(self, "places", places)
         object.__setattr__(self, "rotations", rotations)

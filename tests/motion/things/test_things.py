@@ -53,8 +53,9 @@ def test_a_seat_or_a_top_is_as_high_as_asked(kind, height):
 
 def test_tracks_that_are_none_are_refused():
     mesh = shape("cup")
-    with pytest.raises(InputError, match="do not rotate"):
-        Thing("cup", mesh, np.zeros((3, 3)), np.zeros((3, 3, 3)))
+    for turned in (np.zeros((3, 3)), -np.eye(3)):  # a mirrored thing made the player's payload fail
+        with pytest.raises(InputError, match="do not rotate"):
+            Thing("cup", mesh, np.zeros((3, 3)), np.tile(turned, (3, 1, 1)))
     with pytest.raises(InputError, match="not finite"):
         Thing("cup", mesh, np.full((3, 3), np.nan), np.tile(np.eye(3), (3, 1, 1)))
     with pytest.raises(InputError, match="places"):
