@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import gc
 import logging
+import math
 from collections.abc import AsyncIterator, Callable
 from functools import partial
 from pathlib import Path
@@ -115,6 +116,7 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     page.state_session_capacity = PAGES
     page.max_threads = int(lab.quotas.events.everybody)  # each that waits for a run or a file holds a thread
     start_queue(page, partial(FairEvents, quota=lab.quotas.events, figures=lab.figures, bindings=lab.bindings))
+    lab.health.works["queue of events"] = lambda: math.inf if page._queue.stopped and not lab.health.stopping else 0.0
     options = launch_options() | {
         "allowed_paths": [],
         "server_name": settings.host,

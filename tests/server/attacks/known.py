@@ -161,6 +161,7 @@ FORGED = [
     post("a function by a text", f"{API}/run/predict", 404, body={"fn_index": "0", "data": []}),
     post("a function by a truth", f"{API}/queue/join", 404, body={**OWN, "fn_index": True, "data": []}),
     post("a session that is a number", f"{API}/queue/join", 400, body={"session_hash": 7, "data": []}),
+    post("a session without a name", f"{API}/call/generate", 400, body={"session_hash": "", "data": FIELDS}),
     post("a session of a thousand letters", f"{API}/queue/join", 400, body={"session_hash": "x" * 1000}),
     post("an event that is a list", f"{API}/cancel", 400, body={**OWN, "event_id": []}),
     post("deep JSON", f"{API}/queue/join", 400, 413, content=b"[" * 200_000),

@@ -18,7 +18,7 @@ from gradio.routes import App
 from starlette.routing import Mount
 
 from tests.server.attacks.target import Target
-from tests.server.clients import CALL, FIELDS, client_of, settings_for
+from tests.server.clients import CALL, FIELDS, client_of, lab_of, settings_for
 from tests.server.lab import ROOT, stub_module
 from tests.server.queue.test_queue import wait_for
 from tests.ui.stub_page import stub_context
@@ -189,6 +189,21 @@ def test_answers_that_nobody_fetches_are_few(tmp_path: Path, monkeypatch: pytest
         wait_for(lambda: len(queue.pending_event_ids_session) == 7)
         assert client.get(f"{CALL}/generate/{late}").status_code == 404
         assert sum(not each.empty() for each in queue.pending_messages_per_session.values()) == 7
+
+
+def test_a_session_that_is_not_there_ends_no_queue(tmp_path: Path) -> None:
+    """One call in a session without a name, which Gradio keeps under another, ended the queue for everybody."""
+    with client_of(settings_for(tmp_path)) as client:
+        (queue,) = [r.app.get_blocks()._queue for r in client.app.routes if isinstance(r, Mount)]  # type: ignore[attr-defined]
+        body = {"data": FIELDS, "session_hash": ""}
+        assert client.post(f"{CALL}/generate", json=body).status_code == 400
+        queue.pending_messages_per_session.max_size = 1  # of so many, the oldest go
+        calls = [client.post(f"{CALL}/generate", json={"data": FIELDS}).json()["event_id"] for _ in range(3)]
+        assert "event: complete" in client.get(f"{CALL}/generate/{calls[-1]}").text
+        assert not queue.stopped and not lab_of(client).health.stuck()
+        queue.stopped = True
+        assert "The queue of events has made no progress" in lab_of(client).health.stuck()
+        queue.stopped = False
 
 
 def test_nothing_that_computes_goes_past_the_queue() -> None:

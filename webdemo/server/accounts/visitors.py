@@ -90,8 +90,8 @@ class Bindings:
             begin: makes an unknown one theirs.
             known: refuses an unknown one.
         """
-        if not isinstance(name, str):
-            raise Refused(400, "The session's name is not text: reload the page.", "forged")
+        if not isinstance(name, str) or not name:  # Gradio takes an empty one for another name
+            raise Refused(400, "The session has no name: reload the page.", "forged")
         if len(name) > 100:
             raise Refused(400, "The session's name is too long: reload the page.", "forged")
         with self._lock:

@@ -46,7 +46,11 @@ class _Answer(NamedTuple):
 
 class _Messages(LRUCache[str, Any]):
     """The messages of each session. Every stream of a session that is cut off deletes them, the second one as well;
-    where that failed, what Gradio keeps of a stream stayed for ever."""
+    where that failed, what Gradio keeps of a stream stayed for ever. What is said to a session that is not there is
+    lost: where that failed, the queue ended for everybody."""
+
+    def __missing__(self, session: str) -> Any:
+        return asyncio.Queue()
 
     def __delitem__(self, session: str) -> None:
         with contextlib.suppress(KeyError):

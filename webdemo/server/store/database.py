@@ -195,12 +195,18 @@ class Database:
     """
 
     def __init__(self, file: Path) -> None:
-        with _opening(file):
+        self._sound_until = 0.0
+        try:
             self.engine = _engine_of(file)
             self._make_tables()
             self.session = sessionmaker(self.engine, expire_on_commit=False)
-            self._sound_until = 0.0
             self.check()  # rather than in the middle of a start
+        except (SQLAlchemyError, OSError) as error:
+            reason = str(getattr(error, "orig", None) or error).partition("\n")[0]
+            raise InputError(
+                f"The database {file.name} cannot be opened ({reason}): move the damaged file away and restore a "
+                "backup."
+            ) from None
 
     def _make_tables(self) -> None:
         with self.engine.connect() as connection:
@@ -240,18 +246,6 @@ def locked(session: Session) -> None:
         session: that has not read or written anything yet.
     """
     session.connection().exec_driver_sql("BEGIN IMMEDIATE")
-
-
-@contextmanager
-def _opening(file: Path) -> Iterator[None]:
-    """Turns what fails when a database is opened into an InputError with one sentence."""
-    try:
-        yield
-    except (SQLAlchemyError, OSError) as error:
-        reason = str(getattr(error, "orig", None) or error).partition("\n")[0]
-        raise InputError(
-            f"The database {file.name} cannot be opened ({reason}): move the damaged file away and restore a backup."
-        ) from None
 
 
 def sentence_of(error: Exception) -> InputError:
