@@ -28,7 +28,8 @@ _Trunk = Literal["reaches down", "leans", "is dipped", "twists", "sways", "shake
 _Head = Literal["moves head", "rolls head", "nods", "shakes head", "turns head"]
 
 _Exercise = Literal["push-ups", "sit-ups", "jumping-jacks", "lifts-weights", "skips-rope", "hops", "rolls", "warms-up"]
-_Acrobatics = Literal["handstand", "cartwheel", "somersault", "frog", "leapfrog", "pirouette", "phrase"]
+_Bow = Literal["bows", "bows deeply"]
+_Acrobatics = Literal["handstand", "cartwheel", "somersault", "frog", "leapfrog", "pirouette", "dances"]
 _Sport = Literal["kicks-ball", "stops-ball", "shoots", "shoots-bow", "swings-club", "smashes", "rows", "swims"]
 _Fight = Literal[
     "kicks", "shadow-boxes", "slashes", "chops", "arm-wrestles", "thumb-wrestles", "bumps-elbow", "bumps-hip", "pulls"
@@ -121,14 +122,6 @@ class Jump(_Shape):
     times: Annotated[int, Field(ge=1, le=5)] = 1
 
 
-class Bow(_Shape):
-    """Bows from the hips, so many where the words give no number, and ``deep`` ones."""
-
-    do: Literal["bow"] = "bow"
-    deep: bool = False
-    times: Annotated[int, Field(ge=1, le=5)] = 1
-
-
 class Gesture(_Shape):
     """A gesture of the hands, by its name in :data:`acts.staging.gestures.GESTURES`.
 
@@ -166,11 +159,11 @@ class Touch(_Shape):
 class Hold(_Shape):
     """Both in a hold while they go round: "closed" as in a waltz, a "ring" with both hands joined, or a "twirl".
 
-    Two whose "palms" are against each other's lean in and stay where they are.
+    Two whose "palms" are against each other's lean in and stay where they are; a "couple" dances as recorded ones do.
     """
 
     do: Literal["hold"] = "hold"
-    hold: Literal["closed", "ring", "twirl", "palms"]
+    hold: Literal["closed", "ring", "twirl", "palms", "couple"]
 
 
 class Link(_Shape):
@@ -219,7 +212,7 @@ class Limb(_Shape):
 
 
 class Figure(_Shape):
-    """A figure of the whole body on the spot, by its name in ``acts/staging/figures.toml``.
+    """A figure of the whole body on the spot, by its name in ``acts/staging/figures.toml``, or one that was recorded.
 
     Attributes:
         figure: which one.
@@ -232,7 +225,7 @@ class Figure(_Shape):
     """
 
     do: Literal["figure"] = "figure"
-    figure: Literal[_Exercise, _Acrobatics, _Sport, _Fight, _Labour]
+    figure: Literal[_Bow, _Exercise, _Acrobatics, _Sport, _Fight, _Labour]
     times: Annotated[int, Field(ge=0, le=20)] = 0
     mirrored: bool = False
     meets: bool = False
@@ -254,7 +247,6 @@ Shape = Annotated[
     | Place
     | Posture
     | Jump
-    | Bow
     | Gesture
     | Touch
     | Hold

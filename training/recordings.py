@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import argparse
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from motion.vectors import Array
 from training.core.shell import exit_code
 
 from .corpus.cues import SourceClip
+from .corpus.duets import HELD_OUT, danced, read_takes
 from .corpus.sources import FPS, load_sources
 
 STILL = 0.2
@@ -49,6 +51,20 @@ SHORTEST = 45
 """Frames of a recording of a gesture that goes on, at least."""
 STAYS, FACES = 0.45, 0.9
 """Metres and radians by which somebody who gestures on the spot moves and turns, at most."""
+FIGURES: Mapping[str, tuple[str, ...]] = {"dances": ("dance", "dance-show"), "shadow-boxes": ("shadow-box", "punch")}
+"""Figures that go on, each with the actions of its recordings."""
+STIFF = ("giant", "chimpira", "childish")
+"""Manners in which people bow as others do."""
+BOWED, DEEPLY, BEGUN = 0.6, 1.0, 0.15
+"""Radians of the trunk of a bow, and of a deep one, at least, and the share of them from which it has begun."""
+AROUND = 10
+"""Frames before and after a bow."""
+LEFT_OUT = ("cmu-dance-martial", "deepmimic")
+"""Data sets with no dance that would be taken for one: temple dances, and a step or two."""
+LASTS, TRAVELS, LIVELY = 180, 1.1, 0.6
+"""Frames of a piece of a figure, metres that it spans at most, and the mean metres a second of its joints at least."""
+TOGETHER, JOINED = 360, 0.25
+"""Frames of a dance of two, and metres between two hands that are joined in it."""
 NECK = SMPL22.index("neck")
 WRISTS, SHOULDERS = ([SMPL22.index(f"{side}_{j}") for side in ("left", "right")] for j in ("wrist", "shoulder"))
 LEANS, RAISED = 0.25, 0.1
@@ -144,6 +160,53 @@ def bystanders(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
                 yield f"{clip.source}_{i}_{start}", canonicalize(piece)
 
 
+def figures(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
+    """Names and positions (T, 22, 3) of whole bodies in a figure on the spot, its liveliest piece of each clip."""
+    for figure, actions in FIGURES.items():
+        kept = list[Array]()
+        for clip in clips:
+            if clip.action in actions and clip.dataset not in LEFT_OUT and len(clip.positions) >= SHORTEST:
+                kept += lively_pieces(clip.positions.astype(np.float64))
+        yield from ((f"{figure}-{i}", canonicalize(piece)) for i, piece in enumerate(kept))
+
+
+def bows(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
+    """Names and positions (T, 22, 3) of bows, and of deep ones."""
+    for i, clip in enumerate(clip for clip in clips if clip.action == "bow" and clip.style in (*PLAIN, *STIFF)):
+        trunk = clip.positions[:, NECK] - clip.positions[:, 0]
+        lean = np.arctan2(np.linalg.norm(trunk[:, [0, 2]], axis=-1), trunk[:, 1])
+        if lean.max() > BOWED:
+            bent = np.flatnonzero(lean > lean[0] + BEGUN * (lean.max() - lean[0]))
+            piece = clip.positions[max(bent[0] - AROUND, 0) : bent[-1] + AROUND]
+            name = "bows deeply" if lean.max() > DEEPLY else "bows"
+            yield f"{name}-{i}", canonicalize(piece.astype(np.float64))
+
+
+def lively_pieces(positions: Array) -> list[Array]:
+    """The pieces of a recording (T, 22, 3) in which somebody moves a lot and stays near one place."""
+    length = min(LASTS, len(positions))
+    pieces = [positions[at : at + length] for at in range(0, len(positions) - length + 1, length)]
+    spans = [np.ptp(piece[:, 0][:, [0, 2]], axis=0).max() for piece in pieces]
+    return [piece for piece, span in zip(pieces, spans, strict=True) if span < TRAVELS and speed(piece) > LIVELY]
+
+
+def speed(positions: Array) -> float:
+    """The mean speed of the joints of a person (T, 22, 3), in metres a second."""
+    return float(np.linalg.norm(np.diff(positions, axis=0), axis=-1).mean()) * FPS
+
+
+def couples(data: Path) -> Iterator[tuple[str, Array]]:
+    """Names and positions (T, 2, 22, 3) of two who dance with each other, where their hands are joined the longest."""
+    for name, people in read_takes(data):
+        first, last = danced(people)
+        starts = range(first, last - TOGETHER + 1, 15)
+        if name not in HELD_OUT and starts:
+            hands = people[:, :, WRISTS]
+            joined = np.linalg.norm(hands[0][:, :, None] - hands[1][:, None], axis=-1).min(axis=(1, 2)) < JOINED
+            at = max(starts, key=lambda start: int(joined[start : start + TOGETHER].sum()))
+            yield name, canonicalize(people[:, at : at + TOGETHER]).swapaxes(0, 1)
+
+
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.recordings", description=__doc__)
@@ -154,10 +217,12 @@ def main(argv: list[str] | None = None) -> int:
     def job() -> None:
         clips = load_sources(options.data)
         options.out.mkdir(parents=True, exist_ok=True)
-        for name, chosen in (("idle", bystanders), ("gestures", gestures), ("gaits", gaits)):
-            kept = {each: resample(positions, FPS, RATE) for each, positions in chosen(clips)}
+        made = {"idle": bystanders(clips), "gestures": gestures(clips), "gaits": gaits(clips)}
+        made |= {"figures": chain(figures(clips), bows(clips)), "couples": couples(options.data)}
+        for name, chosen in made.items():
+            kept = {each: resample(positions, FPS, RATE) for each, positions in chosen}
             if not kept:
-                raise InputError(f"{options.data} holds no recordings for {name}: unpack ReActIdle and Bandai Namco's.")
+                raise InputError(f"{options.data} holds no recordings for {name}: docs/corpus.md names the data sets.")
             with replacing(options.out / f"{name}.npz") as temporary, temporary.open("wb") as file:
                 poses = {each: np.rint(1000 * positions).astype(np.int16) for each, positions in kept.items()}
                 np.savez_compressed(file, **poses)

@@ -10,6 +10,7 @@ from acts.plan import Act, other_of
 from acts.reading.vocabulary import vocabulary
 
 from .gestures import GESTURES
+from .holds import COUPLE
 from .score import LOW, SIDES, Move, Strike
 
 _NEAR = frozenset(("touch", "fight", "dance", "care"))
@@ -22,7 +23,7 @@ _BODILY = frozenset(("body", "ways", "moves", "stage"))
 """Groups of acts of the whole body."""
 _OWN_ARMS = frozenset(("creep-up", "sneak", "sneak-away", "stagger", "skip", "moonwalk", "strut", "stumble", "dive"))
 """Acts of which arms of their own are part."""
-_HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture", "jump", "bow"))
+_HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture", "jump"))
 """Shapes that need no hands."""
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
 """Shapes that take the other along."""
@@ -56,11 +57,6 @@ def is_attempt(act: Act, entry: Entry) -> bool:
     return tried and any(shape.do in ("strike", "hold") for shape in entry.stage)
 
 
-def is_deep(act: Act) -> bool:
-    """True for an act that is done deeply, such as a low bow."""
-    return any(adverb in ("deeply", "low", "deep") for adverb in act.manner)
-
-
 def only_stays(entry: Entry) -> bool:
     """True for an act of a bystander."""
     shown = {shape.do for shape in entry.stage}
@@ -92,7 +88,11 @@ def is_near(act: Act, entry: Entry) -> bool:
 
 def reaches(act: Act, entry: Entry) -> bool:
     """True for an act that the other takes part in: it touches, holds, lifts or strikes them, or needs an answer."""
-    if entry.mutual or any(shape.who != "agent" or shape.do in _JOINS for shape in entry.stage):
+    alone = len(act.agents) == 1 and act.patient is None  # who dances with nobody
+    joins = [
+        s for s in entry.stage if s.do in _JOINS and not (alone and isinstance(s, shapes.Hold) and s.hold == COUPLE)
+    ]
+    if entry.mutual or joins or any(shape.who != "agent" for shape in entry.stage):
         return True
     return act.patient is not None and all(shape.do in ("place", "stay") for shape in entry.stage)
 
@@ -117,13 +117,14 @@ def reaches_low(act: Act, entry: Entry) -> bool:
 
 def is_manner(entry: Entry) -> bool:
     """True for moving in unison, in canon or as the other does: another act's manner, or else a phrase of a dance."""
-    return any(getattr(shape, "figure", "") == "phrase" for shape in entry.stage)
+    return any(getattr(shape, "figure", "") == "dances" for shape in entry.stage)
 
 
 def figure_of(act: Act, shape: shapes.Figure) -> shapes.Figure:
-    """The figure of an act: as often as its words say, and with the other leg where they name the left one."""
-    mirrored = shape.mirrored ^ (act.side == "left")
-    return shape.model_copy(update={"times": act.times or shape.times, "mirrored": mirrored})
+    """The figure of an act: as often and as deep as its words say, with the other leg where they name the left one."""
+    deep = shape.figure == "bows" and any(adverb in ("deeply", "low", "deep") for adverb in act.manner)
+    told = {"times": act.times or shape.times, "mirrored": shape.mirrored ^ (act.side == "left")}
+    return shape.model_copy(update=told | ({"figure": "bows deeply"} if deep else {}))
 
 
 def strike_of(blows: Blows, done: Done, *, late: bool) -> Strike | None:

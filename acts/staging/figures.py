@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
@@ -19,11 +19,14 @@ from numpy.typing import NDArray
 
 from acts.shapes import Figure
 from motion import FPS
+from motion.transforms import heading
 from motion.vectors import Array
 
 from .figure_floor import grounded_poses
-from .poses import ALL, Pose
+from .places import Way2D
+from .poses import ALL, HANDS, Pose, all_but
 from .postures import RISING, posture_joints, postures
+from .recordings import has_takes, performing
 from .score import Change, Score
 from .window import OFTEN, SETTLES, Part, Stretch, late_by
 
@@ -48,6 +51,8 @@ _ROUND = 2.0
 """Frames over which the angles are rounded at a pose (the width of a Gaussian)."""
 DOWN = 0.35
 """Height in metres of the pelvis of a person on the ground, who has to get up before a figure."""
+DANCES: Final = "dances"
+"""The figure that the network may dance as it likes, if not in time with another."""
 SHORTEST = 20
 """Frames for which a figure is begun, at least."""
 _SEEN = 6
@@ -93,8 +98,8 @@ def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
         (frames, 22, 3) metres; the body is on the floor, and what stands on it does not glide.
     """
     length = frames / FPS
-    late, early = (min(seconds, length / 4) for seconds in (figure.late, figure.early))
-    times, rows = _scheduled(figures()[figure.figure], figure.times, length - late - early)
+    late = min(figure.late, length / 4)
+    times, rows = _scheduled(figures()[figure.figure], figure.times, length - late)
     times[1:] += late
     if figure.mirrored:
         rows = _mirrored(rows)
@@ -181,12 +186,20 @@ def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Arra
     if last is not None and last[0, 1] <= DOWN:
         first = min(RISING, beat.frames)
         rising = _getting_up(scores, person, beat, last)
-        for joints, at, known in posture_joints(rising, beat.window.start, beat.window.stop):
-            parts.append(beat.known(person, np.asarray(at) - beat.start, known, joints))
-    frames, poses = _figure(scores[beat.window.beat], person, beat, first, seed)
-    if len(shown := np.isin(frames, beat.shown(frames)).nonzero()[0]):
-        parts.append(beat.known(person, frames[shown], poses[shown], ALL, kept=True))
-    return parts
+        for joints, rises, known in posture_joints(rising, beat.window.start, beat.window.stop):
+            parts.append(beat.known(person, np.asarray(rises) - beat.start, known, joints))
+    score = scores[beat.window.beat]
+    frames, poses = _figure(score, person, beat, first, seed)
+    if not len(shown := np.isin(frames, beat.shown(frames)).nonzero()[0]):
+        return parts
+    figure, at, poses = score.figures["ab"[person]], frames[shown], poses[shown]
+    busy = has_takes(figure.figure) and (figure.meets or "ab"[person] in score.gestures)
+    body = all_but(HANDS) if busy else ALL
+    part = beat.known(person, at, poses, body, kept=not figure.figure.startswith("bows"))
+    if figure.in_time or figure.figure != DANCES:
+        return [*parts, part]
+    way = Way2D(person, at.tolist(), poses[:, 0][:, [0, 2]], heading(poses))
+    return [*parts, *beat.known_way(way), replace(part, kept=False, soft=True, free=True)]
 
 
 def figure_poses(score: Score, person: int, beat: Stretch, seed: int) -> list[Pose]:
@@ -204,7 +217,11 @@ def _figure(score: Score, person: int, beat: Stretch, first: int, seed: int) -> 
     if count < SHORTEST:
         return np.zeros(0, dtype=int), np.zeros((0, len(ALL), 3))
     figure = figure.model_copy(update={"late": figure.late + late})
-    poses = figured(figure, beat.halt(person), angle, count)
+    if has_takes(figure.figure):
+        own = seed if figure.in_time else 2 * seed + person
+        poses = performing(figure, beat.halt(person), angle, count, own)
+    else:
+        poses = figured(figure, beat.halt(person), angle, count)
     frames = np.union1d(np.arange(0, count, OFTEN), [count - 1])
     return frames + first, poses[frames]
 

@@ -21,14 +21,14 @@ from .figures import figure_parts, figure_poses
 from .floor import plan
 from .gaits import STEPS, low_gait_parts, step_parts
 from .gestures import hand_parts, hands_of
-from .holds import hold_parts, pull_parts, twirl_parts
+from .holds import COUPLE, hold_parts, pull_parts, twirl_parts
 from .lifts import Carrying
 from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
 from .places import EVENLY, Standing, Way2D
 from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, upright
-from .postures import bow_parts, posture_parts, postures
-from .recordings import Performance, performance, standing_by, walking
+from .postures import posture_parts, postures
+from .recordings import Performance, dancing, performance, standing_by, walking
 from .score import Move, Score, Touch, goes
 from .strikes import strike_parts
 from .touches import touch_parts
@@ -184,18 +184,22 @@ class _Beat:
         ways = {
             way.person: way for way in plan(moves, goal, stretch.frames, first=not start) if way.person not in there
         }
+        couple: list[Part] = []
+        if score.hold == COUPLE and len(ways) == 2:
+            busy = [HANDS if who in score.gestures else () for who in "ab"]
+            couple, ways = _dancing_parts(stretch, self.story.seed, [all_but(joints) for joints in busy])
         stretch = replace(stretch, ways=ways)
         if lift is not None and len(ways) == 2:
             carrying = Carrying(lift, stretch, score.gestures.get("ab"["ba".index(lift.carrier)]))
             parts += carrying.parts()
             stretch = replace(stretch, ways=carrying.before())
-        return parts + self.on_the_way(moves, touch, posed, stretch)
+        return parts + couple + self.on_the_way(moves, touch, posed, stretch)
 
     def on_the_spot(self, moves: Sequence[Move], stretch: Stretch) -> tuple[list[Part], dict[int, Array]]:
         """The parts of people who stay where they are, and a pose (22, 3) of those whose hands are still free.
 
-        A figure comes before limbs, these before a bow, a bow before standing by, and that before a posture. Who
-        stands by has a place, and no pose. A jump is never a draft: of one, the network's feet stay on the floor.
+        A figure comes before limbs, these before standing by, and that before a posture. Who stands by has a place, and
+        no pose. A jump is never a draft: of one, the network's feet stay on the floor.
         """
         score, seed = self.score, self.story.seed
         gone = _gone(moves)
@@ -210,9 +214,6 @@ class _Beat:
                 posed[person] = stands
             elif stays and up and who in score.limbs:
                 parts += limb_parts(person, score, stretch, seed)
-                posed[person] = stands
-            elif stays and up and who in score.bows and _only_bows(score, who):
-                parts += softened(bow_parts(person, score, stretch, seed))
                 posed[person] = stands
             elif up and who in score.idle & score.frozen:
                 parts += _statue_parts(person, stretch)
@@ -257,7 +258,7 @@ class _Beat:
                 joints = () if loose else all_but(HANDS)
                 parts += _going_parts(person, stretch, self.story.seed, joints, waits=free and loose)
         leads = "ring" if any(move.backwards for move in moves) and score.by_both_hands else ""
-        if (hold := score.hold or leads) and len(ways) == 2:
+        if (hold := score.hold or leads) not in ("", COUPLE) and len(ways) == 2:
             parts += hold_parts(hold, stretch)
         if len(ways) == 2 and score.twirls:
             parts += twirl_parts(stretch)
@@ -273,7 +274,7 @@ class _Beat:
     def performance(self, person: int) -> Performance | None:
         """The recorded gesture of a person on their feet who does nothing else; None of others."""
         who, score = "ab"[person], self.score
-        if person in self.down or who not in score.gesturing - {*score.limbs, *score.figures, *score.bows}:
+        if person in self.down or who not in score.gesturing - {*score.limbs, *score.figures}:
             return None
         frames = self.story.edges[self.window.beat + 1] - self.start
         return performance(score.gestures, person, frames, self.story.seed)
@@ -306,11 +307,6 @@ def _until_posed(way: Way2D, hand: KnownFrames | None, stretch: Stretch) -> Way2
     kept = np.asarray(stretch.in_window(way.frames)) < min(hand.frames)
     headings = None if way.headings is None else way.headings[kept]
     return Way2D(way.person, np.asarray(way.frames)[kept].tolist(), way.places[kept], headings)
-
-
-def _only_bows(score: Score, who: str) -> bool:
-    """True for a person who bows and keeps their feet and hands out of other things."""
-    return not (who in score.changes or who in score.jumps or who in score.gestures or score.touch)
 
 
 def _keeps_back(score: Score, who: str) -> bool:
@@ -365,6 +361,16 @@ def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int]
         waiting = standing_by(course.places, course.headings, np.arange(stretch.frames) + stretch.start, own)
         parts.append((rests, waiting, (*TRUNK, *HANDS)))
     return [replace(stretch.known(person, f, p[f], j), soft=True, free=True) for f, p, j in parts if len(f) > 1]
+
+
+def _dancing_parts(stretch: Stretch, seed: int, joints: Sequence[Sequence[int]]) -> tuple[list[Part], dict[int, Way2D]]:
+    """The ways of two who dance with each other as a recorded couple does, and a draft of some joints of each."""
+    at, every = stretch.every(EVENLY), np.union1d(np.arange(0, stretch.frames, EVENLY), [stretch.frames - 1])
+    parts, ways = list[Part](), dict[int, Way2D]()
+    for person, poses in enumerate(dancing(stretch.stand, stretch.frames, seed)):
+        parts.append(replace(stretch.known(person, at, poses[at], joints[person]), soft=True, free=True))
+        ways[person] = Way2D(person, every.tolist(), poses[every, 0][:, [0, 2]], heading(poses[every]))
+    return parts, ways
 
 
 def _statue_parts(person: int, stretch: Stretch) -> list[Part]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -31,7 +32,14 @@ class Hold:
     lean: float = 0.0
 
 
-HOLDS: Mapping[str, Hold] = {"closed": Hold(0.6, 0.14), "ring": Hold(0.85, 0.17), "palms": Hold(0.95, 0.0, lean=0.25)}
+COUPLE: Final = "couple"
+"""The hold of two who dance as a recorded couple does."""
+HOLDS: Mapping[str, Hold] = {
+    "closed": Hold(0.6, 0.14),
+    "ring": Hold(0.85, 0.17),
+    "palms": Hold(0.95, 0.0, lean=0.25),
+    COUPLE: Hold(0.75, 0.0),
+}
 """The holds by their names in the lexicon."""
 TWIRL = 0.42
 """Metres between the pelvises of two people while one turns under the other's arm."""

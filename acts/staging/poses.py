@@ -9,7 +9,6 @@ import numpy as np
 from motion import SMPL22
 from motion.kinematics import forward_kinematics
 from motion.limbs import bent_towards
-from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 from motion.vectors import Array
 
@@ -61,14 +60,6 @@ _STOOPED = 1.6
 _BENT = 0.9
 """Radians of a bend from the hips."""
 STANDS: Mapping[str, float] = {"hip": -0.06, "knee": 0.12, "ankle": -0.06, "shoulder": 1.4, "elbow": 0.3, "spine": 0.0}
-BOW_BEGINS = 0.25
-"""Seconds of a beat before a bow, and after it."""
-BOW_TAKES = (1.2, 2.0)
-"""Seconds of a bow, at least and at most."""
-_BOW_DOWN, _BOW_UP = 0.42, 0.52
-"""Shares of a bow at which somebody is down, and from which they rise."""
-_WITH_TRUNK = {"left": 0.3, "right": 0.4}
-"""How far arms turn with a trunk that bows."""
 _FLIES: Mapping[str, float] = {"hip": -0.2, "knee": 0.4, "ankle": 0.45, "shoulder": 1.3, "elbow": 0.3, "spine": 0.0}
 
 
@@ -194,39 +185,6 @@ def leaping(place: Array, angle: float, rise: float = 0.22) -> Sequence[tuple[fl
     bent = _on_floor(_pose_of(angle, _BENDS)[None], place, angle)[0]
     high = _on_floor(_pose_of(angle, _FLIES)[None], place, angle)[0] + np.array([0.0, rise, 0.0])
     return ((-up - 0.23, bent), (0.0, high), (up + 0.2, bent), (up + 0.6, upright(place, angle)))
-
-
-def bowing(place: Array, angle: float, lean: float = _BENT) -> Sequence[tuple[float, Array]]:
-    """A bow on the spot as poses (22, 3) in metres, with their seconds from its lowest moment."""
-    low, up = bending(place, angle, lean), upright(place, angle)
-    return ((-0.7, up), (-0.15, low), (0.15, low), (0.85, up))
-
-
-def bowed(poses: Array, angle: float, seconds: Array, length: float, times: int = 1, lean: float = _BENT) -> Array:
-    """Standing poses (N, 22, 3) of a person who bows so many times, the arms hanging.
-
-    Trunk and head bend down and rise along minimum-jerk courses, slowly where there is time. The arms follow them
-    by a share, so that the hands slide along the thighs, one a little behind the other.
-
-    Args:
-        poses: of the person who stands.
-        angle: heading in radians.
-        seconds: (N,) moments of the beat.
-        length: seconds of the beat.
-        times: bows.
-        lean: radians of a bow.
-    """
-    each = float(np.clip((length - 2 * BOW_BEGINS) / times, *BOW_TAKES))
-    since = np.asarray(seconds, dtype=float) - BOW_BEGINS
-    phase = np.where((since >= 0) & (since < times * each), since % each, 0.0) / each
-    down, up = minimum_jerk(phase / _BOW_DOWN), minimum_jerk((phase - _BOW_UP) / (1 - _BOW_UP))
-    poses, bend = np.asarray(poses, dtype=float), lean * (down - up)
-    bent = leaning(poses, angle, bend)
-    for side, share in _WITH_TRUNK.items():
-        shoulder, *arm = (JOINT[f"{side}_{name}"] for name in ("shoulder", "elbow", "wrist"))
-        hangs = poses[:, arm] - poses[:, [shoulder]]
-        bent[:, arm] = bent[:, [shoulder]] + hangs @ _tilt(angle, share * bend)
-    return bent
 
 
 def _pose_of(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:

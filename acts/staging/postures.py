@@ -1,4 +1,4 @@
-"""Postures, jumps and bows: people who sit, kneel, crouch or lie down in a story and stay so until they get up.
+"""Postures and jumps: people who sit, kneel, crouch or lie down in a story and stay so until they get up.
 
 A network that was trained on people who sit down and get up again does not leave them seated. Their pelvis and legs are
 given, and the trunk and head of those who lie or bend down.
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from acts.shapes import Bow, Jump
+from acts.shapes import Jump
 from motion import FPS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading
@@ -29,10 +29,7 @@ from .poses import (
     TOES,
     UPRIGHT,
     Pose,
-    all_but,
     at_rest,
-    bowed,
-    bowing,
     crouching,
     grounded,
     kneeling,
@@ -43,9 +40,8 @@ from .poses import (
     stooping,
     upright,
 )
-from .recordings import standing_by
 from .score import Change, Score, at_start
-from .window import SETTLES, Part, Stretch, late_by
+from .window import Part, Stretch
 
 HELD = 4
 """Frames between two poses of a person who keeps a posture: as many as between the network's knots."""
@@ -70,14 +66,6 @@ _KNEELS = 0.3
 _HEAD = JOINT["head"]
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""
-BOWED, DEEP = 0.9, 1.25
-"""Radians of a bow, and of a deep one."""
-BOW = 50
-"""Frames from the lowest moment of a bow to that of the next."""
-_BOWS = 6
-"""Frames between two given poses of a bow."""
-_ABOVE = [JOINT["pelvis"], *all_but(LOWER), JOINT["spine1"]]
-"""Joints of a bow; the network has the legs."""
 _LOW = ("lies", "sits on the ground")
 """Postures from which people sit up and get their feet under them before they stand."""
 _MAKES: Mapping[str, Callable[[Array, float], Array]] = {
@@ -110,9 +98,9 @@ def postures(
     own = [change for change in score.changes.get(who, ()) if not change.already]
     if last is not None and now != "stands" and last[0, 1] > UPRIGHT:  # as in a given motion
         now, own = "stands", [Change.model_validate({"posture": now}), *own]
-    jumps, bows = score.jumps.get(who), score.bows.get(who)
-    if now == "stands" and not own and not jumps and not bows:
-        others = [*score.changes, *score.jumps, *score.bows]
+    jumps = score.jumps.get(who)
+    if now == "stands" and not own and not jumps:
+        others = [*score.changes, *score.jumps]
         return [(start, upright(*_place(person, stand, None)))] if last is None and others else []
     place, angle = _place(person, stand, last)
     if last is None and now == "lies":  # across the other's way, and not with the feet towards them
@@ -141,7 +129,6 @@ def postures(
         poses |= _stays(pose, begins, stop)
     if now == "stands":
         poses |= dict(_jumping(jumps, start, stop, place, angle)) if jumps else {}
-        poses |= dict(_bowing(bows, start, stop, place, angle)) if bows else {}
     return [(frame, poses[frame]) for frame in sorted(poses) if start <= frame < stop]
 
 
@@ -224,19 +211,6 @@ def posture_joints(
                 yield given, [frame for frame, _ in shown], known if stoops or not own else at_rest(known)
 
 
-def bow_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part]:
-    """The body of a person who bows on the spot, but for the legs, as far as it falls into a window."""
-    bows = score.bows["ab"[person]]
-    frames = beat.every(_BOWS, SETTLES // 2 if beat.start else 0)
-    if not len(frames):  # of a beat of which only the way to the next one is in the window
-        return []
-    angle = float(beat.stand.headings[person])
-    stands = standing_by(beat.halt(person), angle, frames + beat.start, 2 * seed + person)
-    late, lean = late_by(seed, person), DEEP if bows.deep else BOWED
-    poses = bowed(stands, angle, frames / FPS - late, beat.frames / FPS - late, bows.times, lean)
-    return [beat.known(person, frames, poses, _ABOVE)]
-
-
 def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:
     return dict.fromkeys({*range(start, stop, HELD), max(start, stop - 1)}, pose)
 
@@ -247,14 +221,6 @@ def _jumping(jumps: Jump, start: int, stop: int, place: Array, angle: float) -> 
     for i in range(jumps.times):
         for seconds, pose in leaping(place, angle):
             yield round(top + i * LEAP + seconds * FPS), pose
-
-
-def _bowing(bows: Bow, start: int, stop: int, place: Array, angle: float) -> Iterator[Pose]:
-    """The poses of so many bows, the lowest of the first a second after the beat begins."""
-    low = start + min(FPS, (stop - start) // 2)
-    for i in range(bows.times):
-        for seconds, pose in bowing(place, angle, DEEP if bows.deep else BOWED):
-            yield round(low + i * BOW + seconds * FPS), pose
 
 
 def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, float]:

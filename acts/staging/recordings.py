@@ -1,4 +1,4 @@
-"""Recorded people who stand by, walk, run and gesture: drafts that the network makes its motion from.
+"""Recorded people who stand by, walk, run, gesture and dance: drafts that the network makes its motion from.
 
 A gesture is a take of recorded people, chosen by the seed: a hand that goes up, what it does there, and the way down.
 What it does is played to and fro as long as the gesture lasts.
@@ -14,13 +14,13 @@ from pathlib import Path
 
 import numpy as np
 
-from acts.shapes import Gesture
+from acts.shapes import Figure, Gesture
 from motion import FPS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix, mirrored
 from motion.vectors import Array
 
-from .places import Course, direction
+from .places import Course, Standing, bearing, direction
 from .poses import JOINT, LOWER
 from .window import Frames, late_by
 
@@ -50,6 +50,8 @@ _FASTEST = 1.4
 """How much faster a recording is played, at most."""
 _FITTING = 8
 """Takes of a gesture that fit best into its time, of which the seed chooses."""
+_MEETS = 1.0
+"""Seconds in which two who dance come to where the recorded couple is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,10 +231,57 @@ def standing_by(place: Array, angle: float | Array, frames: Frames, seed: int) -
     """
     dice, known = np.random.default_rng([seed, 2]), recordings()
     poses = known[int(dice.integers(len(known)))]
-    at = dice.uniform(0, len(poses)) + np.asarray(frames) * RATE / FPS
-    last = len(poses) - 1
-    at = last - np.abs(at % (2 * last) - last)  # to its end and back
-    return placed(sampled(poses, at), place, angle)
+    begins = dice.uniform(0, len(poses)) * FPS / RATE
+    return placed(sampled(poses, _to_and_fro(np.asarray(frames) + begins, len(poses))), place, angle)
+
+
+def _to_and_fro(frames: Array | Frames, count: int) -> Array:
+    """Where frames (N,) of a scene are among so many poses that are played to their end and back."""
+    last = count - 1
+    return np.asarray(last - np.abs((np.asarray(frames) * RATE / FPS) % (2 * last) - last))
+
+
+def has_takes(figure: str) -> bool:
+    """True for a figure of a whole body that was recorded."""
+    return any(name.startswith(f"{figure}-") for name in _read("figures"))
+
+
+def performing(figure: Figure, place: Array, angle: float, frames: int, seed: int) -> Array:
+    """A person (T, 22, 3) who does a recorded figure around a place (2,), from where they stand by and back to it."""
+    known = [poses for name, poses in _read("figures").items() if name.startswith(f"{figure.figure}-")]
+    poses, at = known[int(np.random.default_rng([seed, 6]).integers(len(known)))], np.arange(frames)
+    if figure.mirrored:
+        poses = mirrored(poses)
+    since, left = at - figure.late * FPS, frames - 1 - figure.early * FPS - at
+    goes = _to_and_fro(since.clip(min=0), len(poses))
+    if figure.times:  # so often, one after another
+        once = len(poses) / RATE * FPS
+        once = max(min(once, (frames - figure.late * FPS) / figure.times), once / _FASTEST)
+        goes, left = (since.clip(min=0) % once) / once * (len(poses) - 1), figure.times * once - since
+    stands = standing_by(place, angle, at, seed)
+    shown = placed(sampled(poses, goes), place, angle)
+    share = (minimum_jerk(since / FPS / BLENDS) * minimum_jerk(left / FPS / BLENDS))[:, None, None]
+    return np.asarray((1 - share) * stands + share * shown)
+
+
+@cache
+def _couples() -> tuple[Array, ...]:
+    with np.load(_FOLDER / "couples.npz", allow_pickle=False) as kept:
+        return tuple(kept[name].swapaxes(0, 1) / 1000.0 for name in sorted(kept.files))
+
+
+def dancing(stand: Standing, frames: int, seed: int) -> Array:
+    """Two who dance with each other (2, T, 22, 3) as a recorded couple does, from where they stand."""
+    dice, known = np.random.default_rng([seed, 5]), _couples()
+    couple = known[int(dice.integers(len(known)))][:: int(dice.choice([1, -1]))]
+    at = np.arange(frames)
+    first = couple[:, 0, 0][:, [0, 2]]
+    turn = bearing(stand.towards(0)) - bearing(first[1] - first[0])
+    spots, middle = np.insert(first, 1, 0.0, axis=1) @ heading_matrix(turn).T, stand.places.mean(axis=0)
+    shift = np.insert(middle, 1, 0.0) - spots.mean(axis=0)
+    poses = np.stack([sampled(one, _to_and_fro(at, len(one))) for one in couple]) @ heading_matrix(turn).T + shift
+    apart = np.insert(stand.places, 1, 0.0, axis=1) - (spots + shift)
+    return np.asarray(poses + apart[:, None, None] * (1 - minimum_jerk(at / FPS / _MEETS))[:, None, None])
 
 
 def walking(course: Course, seed: int) -> tuple[Array, Array]:

@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import Literal
 
 from acts import shapes
-from acts.shapes import Bow, Figure, Gesture, Jump, Limb
+from acts.shapes import Figure, Gesture, Jump, Limb
 
 SIDES = ("left", "right")
 Way = Literal[
@@ -171,7 +171,7 @@ class Score:
         changes: of posture in order, by person.
         limbs: legs, trunk and head that move by themselves, by person.
         figures: what whole bodies do on the spot, by person.
-        jumps, bows: by person.
+        jumps: by person.
         on_feet: those who do what needs legs.
         loose: those who do nothing with their hands: they walk, sit, jump or stand by.
         side: how the two are, and stay, to each other: "beside", "back to back", or "" for neither.
@@ -198,7 +198,6 @@ class Score:
     limbs: Mapping[str, tuple[Limb, ...]] = field(default_factory=dict)
     figures: Mapping[str, Figure] = field(default_factory=dict)
     jumps: Mapping[str, Jump] = field(default_factory=dict)
-    bows: Mapping[str, Bow] = field(default_factory=dict)
     on_feet: frozenset[str] = frozenset()
     loose: frozenset[str] = frozenset()
     side: str = ""
@@ -209,8 +208,8 @@ class Score:
 
     @property
     def is_planned(self) -> bool:
-        """True if people go somewhere, stand by, sit, kneel, lie down, jump, bow or touch."""
-        bodies = (self.touch, self.changes, self.jumps, self.bows, self.limbs, self.figures)
+        """True if people go somewhere, stand by, sit, kneel, lie down, jump or touch."""
+        bodies = (self.touch, self.changes, self.jumps, self.limbs, self.figures)
         return goes(self.moves) or self.has_places or any(bodies) or bool(self.idle or self.gesturing)
 
     @property

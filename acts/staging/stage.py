@@ -23,7 +23,6 @@ from .act_kinds import (
     hits,
     is_after,
     is_attempt,
-    is_deep,
     is_manner,
     is_near,
     loose,
@@ -33,7 +32,9 @@ from .act_kinds import (
     strike_of,
     walks,
 )
+from .figures import DANCES
 from .gestures import GESTURES
+from .holds import COUPLE
 from .moves import (
     away,
     fastest,
@@ -51,6 +52,8 @@ PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
 ON_BENCH = 0.65
 """Metres between two who sit on one bench."""
+_DANCES = shapes.Figure(figure=DANCES)
+"""What somebody does who dances, and not with the other."""
 _JUMPS = 3
 """Jumps of a person who is already jumping when the beat begins."""
 _MOST = 5
@@ -101,7 +104,6 @@ class _Stage:
         self.jumps: dict[str, shapes.Jump] = {}
         self.limbs: dict[str, tuple[shapes.Limb, ...]] = {}
         self.figures: dict[str, shapes.Figure] = {}
-        self.bows: dict[str, shapes.Bow] = {}
         self.touch: Touch | None = None
         self.lift: Lift | None = None
         self.blows: list[tuple[tuple[str, ...], shapes.Strike, Act]] = []
@@ -143,7 +145,7 @@ class _Stage:
             moves=moves,
             idle=idle,
             frozen=frozenset(self.frozen),
-            gesturing=waving - self.changes.keys() - self.jumps.keys() - self.bows.keys(),
+            gesturing=waving - self.changes.keys() - self.jumps.keys() - self.figures.keys(),
             gestures=self.gestures,
             touch=self.touch,
             hold=self.hold,
@@ -156,7 +158,6 @@ class _Stage:
             limbs=self.limbs,
             figures=self.figures,
             jumps=self.jumps,
-            bows=self.bows,
             linked=self.linked or any(move.linked for move in moves),
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
             loose=free - self.gestures.keys() - self.limbs.keys(),
@@ -207,9 +208,6 @@ class _Stage:
             case shapes.Jump():
                 times = act.times or (max(shape.times, _JUMPS) if act.already else shape.times)
                 self.jumps |= dict.fromkeys(people, shape.model_copy(update={"times": min(times, _MOST)}))
-            case shapes.Bow():
-                times, deep = min(act.times or shape.times, _MOST), shape.deep or is_deep(act)
-                self.bows |= dict.fromkeys(people, shape.model_copy(update={"times": times, "deep": deep}))
             case shapes.Gesture():
                 sides = "both" if GESTURES[shape.gesture].both else act.side or shape.sides
                 self.gestures |= dict.fromkeys(
@@ -219,6 +217,8 @@ class _Stage:
                 self._touch(act, shape)
             case shapes.Hold(hold="twirl"):
                 self.twirls = people[0]
+            case shapes.Hold(hold="couple") if len(people) == 1 and act.patient is None:
+                self.figures |= dict.fromkeys(people, _DANCES)
             case shapes.Hold():
                 self.hold = shape.hold
             case shapes.Pull():
@@ -353,6 +353,8 @@ class _Stage:
                 self.touch = touch.model_copy(update={"late": False})
         low = {who for who, listed in self.changes.items() if listed[-1].posture != "stands"}
         self.limbs = {who: limbs for who, limbs in self.limbs.items() if who not in low}
+        if self.hold == COUPLE and (self.side or self.behind or self.moves):  # they dance, and not with each other
+            self.hold, self.figures = "", self.figures | dict.fromkeys("ab", _DANCES)
         if self.lift is not None:
             comes = next((move.person for move in self.moves if move.way == "to"), self.lift.comes)
             turns = bool(self.twirls) or any(move.way in ("turn", "face") for move in self.moves)

@@ -10,7 +10,7 @@ import pytest
 from acts import read
 from acts.staging.beginnings import BODY, distance, roomy
 from acts.staging.places import Standing
-from acts.staging.poses import at_rest, bowing, lying, upright
+from acts.staging.poses import at_rest, bending, lying, upright
 from acts.staging.postures import postures
 from acts.staging.score import Score
 from acts.staging.stage import score_of
@@ -89,10 +89,7 @@ def test_who_stands_too_close_steps_apart_first(follower: Follower, words: str, 
 
 def test_the_heads_of_two_who_bow_are_counted_to_their_tops() -> None:
     places, headings = np.array([[0.0, 0.0], [0.0, 0.9]]), np.array([0.0, np.pi])
-    poses = {
-        person: [(round(30 + 30 * s), pose) for s, pose in bowing(places[person], float(headings[person]))]
-        for person in (0, 1)
-    }
+    poses = {person: [(30, bending(places[person], float(headings[person])))] for person in (0, 1)}
     room = roomy(Standing(places, headings), poses, [], first=False)
     assert room.delay > 0 and 1.2 < room.stand.gap() < 1.8
     down = roomy(Standing(places, headings), poses, [1], first=False)

@@ -137,7 +137,8 @@ def measured(rule: str, motion: Motion, *, lacking: bool = False) -> str:
     for node in _calls(ast.parse(rule, mode="eval").body):
         if lacking and _name(node.func) in ("times", "exactly"):
             mask, count = (_value(argument, motion) for argument in node.args)
-            if 0 < (seen := _times(motion, mask)) != count:
+            seen = _times(motion, mask)
+            if 0 < seen < count or (seen > count and _name(node.func) == "exactly"):
                 return f"done {seen} time{'s' * (seen != 1)}, not {count}"
         if _name(node.func) in MEASURES and not (lacking and np.any(_value(node, motion))):
             said, limit = str(_call(node, motion, MEASURES)), _limit(node, motion) if lacking else ""

@@ -52,8 +52,8 @@ def leaps(words: str) -> Mapping[str, int]:
     return {who: jump.times for who, jump in score(words).jumps.items()}
 
 
-def bows(words: str) -> Mapping[str, tuple[int, bool]]:
-    return {who: (bow.times, bow.deep) for who, bow in score(words).bows.items()}
+def figures(words: str) -> Mapping[str, tuple[str, int]]:
+    return {who: (figure.figure, figure.times) for who, figure in score(words).figures.items()}
 
 
 def beginning(words: str) -> Standing | None:

@@ -13,6 +13,7 @@ from acts.shapes import Figure
 from acts.staging.figure_floor import _CLEARANCES
 from acts.staging.figures import figured, figures
 from acts.staging.poses import upright
+from acts.staging.recordings import has_takes
 from motion import SMPL22
 
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}
@@ -33,7 +34,8 @@ def heights(poses: NDArray[np.floating]) -> NDArray[np.floating]:
 
 
 def test_the_lexicon_may_name_each_figure_and_no_other() -> None:
-    assert set(get_args(shapes.Figure.model_fields["figure"].annotation)) == set(figures())
+    named = get_args(shapes.Figure.model_fields["figure"].annotation)
+    assert {name for name in named if not has_takes(name)} == set(figures())
 
 
 @pytest.mark.parametrize("seconds", LENGTHS)
@@ -116,9 +118,3 @@ def test_there_is_no_time_for_a_figure_that_is_begun_and_taken_back() -> None:
     poses = made("cartwheel", 1.6)
     assert poses[:, FEET, 1].max() < 0.6
     assert np.abs(poses[-1, 0] - poses[0, 0]).max() < 0.1
-
-
-def test_a_person_who_follows_the_other_is_as_late_as_said() -> None:
-    first, second = made("phrase", 6.0, early=1.0), made("phrase", 6.0, late=1.0)
-    assert np.abs(second[30:] - first[:-30]).mean() < 0.03
-    assert np.abs(second - first).mean() > 0.03

@@ -23,7 +23,7 @@ LEFT, RIGHT = 0, 1
         ("They take each other by both hands and spin round and round.", "ring"),
         ("They push palm against palm.", "palms"),
         # no hold
-        ("They dance.", ""),
+        ("They dance.", "couple"),
         ("Person A dances a tango while person B watches.", ""),
     ],
 )

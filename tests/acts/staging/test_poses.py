@@ -7,19 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from acts.staging.poses import (
-    LOWER,
-    bending,
-    bowed,
-    crouching,
-    grounded,
-    kneeling,
-    leaping,
-    lying,
-    seated,
-    stooping,
-    upright,
-)
+from acts.staging.poses import LOWER, bending, crouching, grounded, kneeling, leaping, lying, seated, stooping, upright
 from motion import SMPL22
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.poses import kneels, lies, low, sits
@@ -87,23 +75,3 @@ def test_a_jump_takes_as_long_as_its_height_needs() -> None:
         assert abs(top[TOES, 1].min() - 0.02 - rise) < 0.1, "the feet leave the floor"
         in_air = math.sqrt(2 * rise / 9.81)
         assert all(abs(seconds) > in_air for seconds, pose in moments if pose[TOES, 1].min() < 0.05)
-
-
-def test_a_bow_takes_its_time_and_the_arms_hang_from_a_trunk_that_is_down() -> None:
-    time = np.arange(0, 5, 0.1)
-    stands = np.repeat(upright(np.zeros(2), 0.6)[None], len(time), axis=0)
-    found = bowed(stands, 0.6, time, 5.0, times=2, lean=0.9)
-    head = found[:, SMPL22.index("head"), 1]
-    assert np.sum(np.diff((head < head[0] - 0.15).astype(int)) == 1) == 2
-    assert head[0] == pytest.approx(head[-1], abs=1e-3)
-    speed = np.linalg.norm(np.diff(found, axis=0), axis=-1) / 0.1
-    assert speed.max() < 1.8, "no dive"
-    at = int(head.argmin())
-    for side in ("left", "right"):
-        shoulder, wrist = (SMPL22.index(f"{side}_{joint}") for joint in ("shoulder", "wrist"))
-        arm = found[at, wrist] - found[at, shoulder]
-        back = arm @ [np.sin(0.6), 0.0, np.cos(0.6)]
-        assert arm[1] < -0.4 and back > -0.3, "it is not stretched out behind"
-    parents, children = np.array(SMPL22.bones).T
-    lengths = np.linalg.norm(found[:, children] - found[:, parents], axis=-1)
-    np.testing.assert_allclose(lengths, np.tile(SMPL22.bone_lengths[children], (len(time), 1)), atol=1e-6)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.shapes import Gesture
-from acts.staging.places import Course
-from acts.staging.recordings import performance, recordings, standing_by, walking
+from acts.shapes import Figure, Gesture
+from acts.staging.places import Course, Standing
+from acts.staging.recordings import dancing, performance, performing, recordings, standing_by, walking
 from motion import FPS, SMPL22
 from motion.transforms import heading
 
@@ -101,3 +101,33 @@ def test_two_who_talk_take_turns_and_counted_strokes_are_not_recorded() -> None:
     assert shares[0, :60].max() == 1.0 and not shares[1, :60].any()
     assert shares[1, 95:140].max() == 1.0 and not shares[0, 95:].any()
     assert performance({"a": Gesture(gesture="waves", times=3)}, 0, 150, 0) is None
+
+
+@pytest.mark.parametrize(("figure", "times"), [("bows", 1), ("bows", 3), ("bows deeply", 1)])
+def test_who_bows_does_so_as_often_as_told_and_stands_before_and_after(figure: str, times: int) -> None:
+    poses = performing(Figure.model_validate({"figure": figure, "times": times}), PLACE, 0.5, 180, 2)
+    leans = np.linalg.norm((poses[:, SMPL22.index("neck")] - poses[:, 0])[:, [0, 2]], axis=-1)
+    assert np.sum(np.diff((leans > (0.4 if figure == "bows deeply" else 0.2)).astype(int)) == 1) == times
+    assert leans[0] < 0.15 and leans[-1] < 0.15
+    assert np.linalg.norm(np.diff(poses, axis=0), axis=-1).max() * FPS < 5.0
+
+
+def test_two_copies_of_a_dance_are_a_second_apart_and_a_mirror_has_the_other_hand() -> None:
+    at = np.zeros(2)
+    one = performing(Figure(figure="dances", early=1.0), at, 0.0, 180, 4)
+    later = performing(Figure(figure="dances", late=1.0), at, 0.0, 180, 4)
+    np.testing.assert_allclose(later[60:140], one[30:110], atol=1e-6)
+    plain, turned = (performing(Figure(figure="dances", mirrored=how), at, 0.0, 180, 4) for how in (False, True))
+    np.testing.assert_allclose(turned[60:120, 20] * [-1, 1, 1], plain[60:120, 21], atol=0.02)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_couple_dances_from_where_the_two_stand_hand_in_hand(seed: int) -> None:
+    stand = Standing(np.array([[1.0, 2.0], [2.1, 2.0]]), np.array([np.pi / 2, -np.pi / 2]))
+    couple = dancing(stand, 420, seed)
+    np.testing.assert_allclose(couple[:, 0, 0][:, [0, 2]], stand.places, atol=1e-9)
+    ways = np.linalg.norm(np.diff(couple, axis=1), axis=-1) * FPS
+    assert 0.3 < ways.mean() < 1.5 and ways.max() < 9.0, "they dance, also where the recording turns back"
+    hands = couple[:, :, 20:22]
+    gaps = np.linalg.norm(hands[0][:, :, None] - hands[1][:, None], axis=-1).min(axis=(1, 2))
+    assert (gaps < 0.25).mean() > 0.4

@@ -16,7 +16,7 @@ from webdemo.inference.story.request import SceneRequest, beat_of
 from webdemo.inference.story.sentences import as_scene, beats_of
 from webdemo.inference.story.toml import read_story, write_story
 
-from .staged_words import beginning
+from .staged_words import beginning, figures
 
 
 def score(text: str) -> Score:
@@ -149,7 +149,7 @@ def test_every_entry_can_be_staged() -> None:
     for name, entry in known.entries.items():
         act = Act(id="1", act=name, agents=("a",), patient="b", part="shoulder")
         found = score_of((act,))
-        if {shape.do for shape in entry.stage} & {"go", "posture", "jump", "bow", "touch", "gesture"}:
+        if {shape.do for shape in entry.stage} & {"go", "posture", "jump", "touch", "gesture"}:
             assert found != Score(alone=found.alone, on_feet=found.on_feet, reaching=found.reaching), name
 
 
@@ -214,6 +214,13 @@ def test_two_who_sit_on_a_bench_sit_on_one() -> None:
 
 
 def test_what_is_done_in_unison_is_no_phrase_of_a_dance() -> None:
-    stage = score("They bow in unison.")
-    assert stage.bows.keys() == {"a", "b"} and not stage.figures
+    assert figures("They bow in unison.") == dict.fromkeys("ab", ("bows", 1))
     assert score("They move in unison.").figures
+
+
+def test_two_who_dance_are_a_couple_and_one_alone_or_beside_the_other_is_not() -> None:
+    for words in ("They dance.", "A dances with B.", "They dance salsa."):
+        assert score(words).hold == "couple" and not score(words).figures
+    alone = score("A dances.")
+    assert not alone.hold and figures("A dances.") == {"a": ("dances", 0)} and alone.idle == {"b"}
+    assert figures("They dance side by side.").keys() == {"a", "b"} and not score("They dance side by side.").hold

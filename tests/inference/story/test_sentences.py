@@ -67,7 +67,7 @@ def test_a_sentence_that_is_not_understood_keeps_its_words_and_its_place() -> No
 def test_speech_and_remarks_are_no_acts() -> None:
     (beat,) = split_sentence('"Follow me!" She bows (he likes that).')
     score = score_of(plan_of_beat(beat).acts)
-    assert score.bows["a"].times == 1 and not score.moves
+    assert score.figures["a"].figure == "bows" and not score.moves
 
 
 def test_stories_longer_than_any_scene_are_refused_before_they_are_read() -> None:
