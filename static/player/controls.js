@@ -110,7 +110,7 @@ export class Controls {
   }
 
   /** Brings everything to what is true of the player now. */
-  show({ clock, directing, framing, orbit, posing, sample, show }) {
+  show({ clock, directing, framing, orbit, sample, show }) {
     const { root } = this;
     const frame = clock.shown;
     const range = this.find(".pdd-range");
@@ -130,7 +130,7 @@ export class Controls {
     press("loop", clock.loop);
     press("follow", orbit.following);
     press("ghosts", show.ghosts);
-    press("pose", Boolean(posing));
+    press("pose", Boolean(directing.posing));
     press("draw", directing.drawing.on);
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
     for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === framing.preset));

@@ -17,6 +17,7 @@ export class Directing {
     this.drawing = new Drawing(player);
   }
 
+  /** Lets a visitor change what `director` keeps. */
   direct(director) {
     const { player } = this;
     this.director = director;

@@ -62,31 +62,19 @@ export function attach(surface, orbit, { changed, mayScroll }) {
   );
 }
 
-const CAMERAS = ["threequarter", "front", "side", "top", "a", "b"];
+// What a key asks for: an action and its argument, steps are ten frames with Shift.
+const KEYS = {
+  ArrowLeft: ["step", -1], ArrowRight: ["step", 1], ArrowUp: ["faster", 1], ArrowDown: ["faster", -1],
+  "[": ["sample", -1], "]": ["sample", 1], " ": ["play"], Home: ["first"], End: ["last"], Enter: ["fullscreen"],
+  Escape: ["close"], "?": ["help"], f: ["follow"], g: ["ghosts"], l: ["loop"], p: ["picture"], s: ["figure"], e: ["pose"], d: ["draw"],
+  1: ["camera", "threequarter"], 2: ["camera", "front"], 3: ["camera", "side"], 4: ["camera", "top"], 5: ["camera", "a"], 6: ["camera", "b"],
+};
 
 /** What a key asks for: [action, argument], or null for keys that are not ours. */
 export function actionFor(event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return null;
-  const step = event.shiftKey ? 10 : 1;
-  switch (event.key) {
-    case " ": return ["play"];
-    case "ArrowLeft": return ["step", -step];
-    case "ArrowRight": return ["step", step];
-    case "ArrowUp": return ["faster", 1];
-    case "ArrowDown": return ["faster", -1];
-    case "Home": return ["first"];
-    case "End": return ["last"];
-    case "Enter": return ["fullscreen"];
-    case "Escape": return ["close"];
-    case "?": return ["help"];
-    case "[": return ["sample", -1];
-    case "]": return ["sample", 1];
-  }
-  const letters = { f: "follow", g: "ghosts", l: "loop", p: "picture", s: "figure", e: "pose", d: "draw" };
-  const action = letters[event.key.toLowerCase()];
-  if (action) return [action];
-  const camera = CAMERAS[Number(event.key) - 1];
-  return camera ? ["camera", camera] : null;
+  const [action, argument] = KEYS[event.key] ?? KEYS[event.key.toLowerCase()] ?? [];
+  return action ? [action, action === "step" && event.shiftKey ? 10 * argument : argument] : null;
 }
 
 /** Whether the focused control wants this key for itself. */

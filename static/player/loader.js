@@ -22,7 +22,8 @@ function append(tag, attributes) {
 }
 
 /** plotly.js with its 3D charts alone, see static/plotly. */
-export const loadPlotly = (src) => once(src, async () => {
+export const loadPlotly = () => once("plotly", async () => {
+  const src = new URL("../plotly/plotly-gl3d.min.js", import.meta.url).href;
   if (!window.Plotly?.newPlot) await append("script", { src });
   return window.Plotly;
 });

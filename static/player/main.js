@@ -2,12 +2,12 @@
 
 import { warmBodies } from "./clothes.js";
 import { loadPlotly, loadStyles } from "./loader.js";
-import { warmScene } from "./pane.js";
+import { node } from "./node.js";
+import { follow } from "./palette.js";
 import { loops, Player } from "./player.js";
 import { say } from "../texts.js";
 
 const players = new Set();
-const address = (path) => new URL(path, import.meta.url).href;
 
 /** What tests and curious people look at: the player in view that was made last. */
 const hooks = {
@@ -33,23 +33,36 @@ const hooks = {
   },
 };
 
-const OURS = { plotly: "../plotly/plotly-gl3d.min.js", styles: "player.css", empty: "player.empty" };
+let early = null; // gives the player of `begin` to the page, once that has a place for it
 
-/** Loads what players need and makes a scene for the first of them, before the page has a place for it. */
-export async function warm() {
-  loadStyles(address(OURS.styles));
+/** Plays the example of the page that Gradio is given this configuration of, where the page's first player will be. */
+export function begin({ components }) {
+  const first = components.find(({ props }) => props.elem_id === "player")?.props;
+  if (!first?.value) return;
+  follow(new URLSearchParams(location.search).get("__theme"));
   warmBodies();
-  warmScene(await loadPlotly(address(OURS.plotly)));
+  const place = node("div", "pdd-early");
+  place.innerHTML = first.html_template;
+  document.body.append(place);
+  mount(place, { ...first.props, value: first.value }, (names, sync, become) => {
+    early = (element, props, watch) => {
+      early = null;
+      element.querySelector(".pdd").replaceWith(place.firstElementChild);
+      place.remove();
+      document.dispatchEvent(new Event("pdd-here"));
+      watch(names, sync);
+      become(props);
+    };
+  });
 }
 
 /**
- * `element` holds player.html; `props` are the component's, watched by `watch`. A page whose files lie elsewhere gives the
- * addresses of `plotly` and of our `styles`, and `empty`, the key of what is said while there is no motion: on a second line
- * what comes of it.
+ * `element` holds player.html; `props` are the component's, watched by `watch`. `empty` is the key of what is said while
+ * there is no motion: on a second line what comes of it.
  * Safe to call again for an element that was hidden and shown.
  */
-export async function mount(element, props, watch, trigger, places = {}) {
-  const { plotly, styles, empty } = { ...OURS, ...places };
+export async function mount(element, props, watch, trigger, empty = "player.empty") {
+  if (early && element.closest("#player")) return early(element, props, watch);
   const root = element.querySelector(".pdd");
   const player = new Player(root);
   root.player = player; // for what stands about it and follows its clock
@@ -72,10 +85,13 @@ export async function mount(element, props, watch, trigger, places = {}) {
   };
   player.controls.setEmptyText(say(empty));
   sync();
-  watch(["value", "busy", "progress"], sync);
+  watch(["value", "busy", "progress"], sync, (others) => {
+    props = others;
+    sync();
+  });
   try {
-    const styled = loadStyles(address(styles)).finally(() => root.classList.add("pdd-styled")); // the empty state is there at once
-    const [Plotly] = await Promise.all([loadPlotly(address(plotly)), styled]);
+    const styled = loadStyles(new URL("player.css", import.meta.url).href).finally(() => root.classList.add("pdd-styled")); // the empty state is there at once
+    const [Plotly] = await Promise.all([loadPlotly(), styled]);
     if (!root.isConnected) return;
     await player.open(Plotly);
   } catch (error) {

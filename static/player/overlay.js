@@ -35,6 +35,7 @@ export class Labels {
     this.widths = null; // measured when first placed
     this.labels = roles.map((role, person) => {
       const label = node("span", `pdd-label pdd-label-${"ab"[person]}`, roleText(person, role));
+      label.style.visibility = "hidden"; // it has no place yet
       this.host.append(label);
       return label;
     });

@@ -5,20 +5,12 @@ import { poseAt } from "./decode.js";
 import * as figure from "./figure.js";
 import { Ground } from "./ground.js";
 import { shapesAt } from "./hands.js";
-import { node } from "./node.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
 import { Labels, project } from "./overlay.js";
 import { Scene } from "./scene.js";
 
 const ABOVE_HEAD = 0.2; // metres
 const WIDE = 3.5; // times, skeletons that stand for bodies that cannot be had
-
-let spare = null; // a promise of a scene that no pane has yet
-
-/** Makes a scene ahead, for the first pane that asks for one. */
-export function warmScene(Plotly) {
-  spare = new Scene(node("div", "pdd-gl"), Plotly).open([1, 1, 1]);
-}
 
 export class Pane {
   /** `wear` gives the body of a look, or null while there is none. */
@@ -47,13 +39,7 @@ export class Pane {
   }
 
   async open(background, Plotly) {
-    const host = this.find(".pdd-gl");
-    const ready = spare;
-    spare = null;
-    this.scene = await (ready ?? new Scene(host, Plotly).open(background));
-    if (!ready) return;
-    host.replaceWith(this.scene.host);
-    this.scene.setBackground(background);
+    this.scene = await new Scene(this.find(".pdd-gl"), Plotly).open(background);
   }
 
   /** Another motion to show, or null; `caption` names a cell of a grid that is seen large. */

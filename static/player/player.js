@@ -15,7 +15,7 @@ import { Strip } from "./strip.js";
 import { Framing } from "./views.js";
 
 const STILL_AFTER = 250; // ms
-const LIVE_PAUSE = 48; // ms between pictures that the processor draws of a person who moves now
+const [LIVE_PAUSE, LOADING_PAUSE] = [48, 100]; // ms between pictures of a person who moves now, and while the page loads
 export const loops = { running: 0 }; // animation loops alive on the page; a leak shows here
 
 export class Player {
@@ -137,19 +137,6 @@ export class Player {
     this.wake();
   }
 
-  /** Lets a visitor change what `director` keeps, see directing.js. */
-  direct(director) {
-    this.directing.direct(director);
-  }
-
-  get director() {
-    return this.directing.director;
-  }
-
-  get posing() {
-    return this.directing.posing;
-  }
-
   act(action, argument) {
     this.actions.do(action, argument);
   }
@@ -242,7 +229,7 @@ export class Player {
     }
     this.orbit.step(seconds, wanted);
     const moving = this.clock.playing || !this.orbit.settled(wanted);
-    if (moving && this.sparing && now - this.painted < LIVE_PAUSE) return this.wake();
+    if (moving && now - this.painted < this.sparing) return this.wake();
     this.painted = now;
     if (moving || this.dirty) {
       this.dirty = false;
@@ -260,9 +247,9 @@ export class Player {
 
   paint(pose) {
     const { grid, orbit, theme, themeName, clock, skeleton, show } = this;
-    const posed = this.posing?.pose;
+    const { drawing, posing } = this.directing;
+    const posed = posing?.pose;
     const pinned = pose && !posed && !clock.playing ? this.directing.posesAt(Math.round(clock.shown)) : [];
-    const { drawing } = this.directing;
     if (pose) drawing.lay(this.pane, theme);
     this.shown.forEach((pane, index) => {
       const people = posed ?? (pose && pane.poseAt(clock.shown));
@@ -270,7 +257,7 @@ export class Player {
       const ground = grid.cells.length ? orbit.targets[0] : view.target; // one floor for all cells, which one scene draws
       pane.paint(people, { view, ground, theme, themeName, clock, skeleton, show, pinned });
     });
-    this.posing?.place(this.pane.spots);
+    posing?.place(this.pane.spots);
     if (pose) drawing.place(orbit.view());
     this.controls.show(this);
     this.strip.show(clock.shown);
@@ -282,9 +269,11 @@ export class Player {
     return this.shown.map((pane) => pane.scene?.setStill(still, this.sparing)).some(Boolean);
   }
 
-  /** Whether the processor draws here while it is also needed to follow a person live. */
+  /** Milliseconds between pictures where the processor draws them and is needed for more: to load the page, or to follow a person. */
   get sparing() {
-    return Boolean(this.data?.stream && this.clock.limit !== null && this.scene?.software);
+    if (!this.scene?.software) return 0;
+    if (this.root.closest(".pdd-early")) return LOADING_PAUSE;
+    return this.data?.stream && this.clock.limit !== null ? LIVE_PAUSE : 0;
   }
 
   close() {

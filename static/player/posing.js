@@ -207,7 +207,7 @@ export class Posing {
     const { player, frame } = this;
     if (!changed.length) return;
     player.directing.endPosing();
-    player.director.keepPoses(frame, changed);
+    player.directing.director.keepPoses(frame, changed);
   }
 
   close() {

@@ -20,7 +20,7 @@ export class Paths {
   /** Directs the player of the same tab once it is there; a root that has left the page, or was never on it, does not. */
   meet() {
     if (!this.root.isConnected) return this.leaving.abort();
-    this.player?.direct(this);
+    this.player?.directing.direct(this);
   }
 
   get player() {

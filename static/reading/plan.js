@@ -32,18 +32,11 @@ export function understand({ plan, beats }, number, entry) {
   const { words } = plan.unread[number];
   const unread = plan.unread.filter((_, other) => other !== number);
   const before = new Set(plan.acts.filter((act) => act.words && act.words.start < words.start).map((act) => act.id));
-  const id = freeId(plan);
+  const id = String(1 + Math.max(0, ...plan.acts.map((act) => Number(act.id) || 0)));
   const at = beats.findLastIndex((beat) => beat.some((other) => before.has(other))) + 1;
   const more = [...beats];
   more.splice(at, 0, [id]);
   const [agents, patient] = entry.mutual ? [["a", "b"], null] : [["a"], entry.patient ? "b" : null];
   const act = { id, act: entry.name, agents, patient, order: [], words };
   return ordered({ ...plan, unread, acts: [...plan.acts, act] }, more);
-}
-
-function freeId(plan) {
-  const taken = new Set(plan.acts.map((act) => act.id));
-  let number = plan.acts.length + 1;
-  while (taken.has(`${number}`)) number += 1;
-  return `${number}`;
 }

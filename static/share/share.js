@@ -7,11 +7,7 @@ follow(new URLSearchParams(location.search).get("theme")); // an embedding page 
 
 const motion = document.getElementById("motion");
 if (motion) {
-  const { plotly, playerStyle } = document.body.dataset;
-  const absolute = (path) => new URL(path, document.baseURI).href;
   const props = { value: JSON.parse(motion.textContent), busy: "", progress: null, live: null };
-  mount(document.querySelector(".psh-stage"), props, () => {}, null, {
-    plotly: absolute(plotly), styles: absolute(playerStyle), empty: "player.cannot_show",
-  });
+  mount(document.querySelector(".psh-stage"), props, () => {}, null, "player.cannot_show");
 }
 for (const code of document.querySelectorAll(".psh-more textarea")) code.addEventListener("focus", () => code.select());

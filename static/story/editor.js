@@ -12,6 +12,13 @@ const PIXELS = 16; // a second, at least
 
 const plain = (story) => JSON.stringify({ ...story, ahead: false });
 
+/** Calls `drag` with each move of the pointer on `target` and `end` once it is let go. */
+function follow(target, drag, end) {
+  const left = new AbortController();
+  target.addEventListener("pointermove", drag, left);
+  for (const kind of ["pointerup", "pointercancel"]) target.addEventListener(kind, () => [left.abort(), end()], left);
+}
+
 /** The editor of a story: it shows one and tells of each change. */
 class Editor {
   /** `kept` takes the story as the component's value; `changed` tells the server that the user changed it. */
@@ -66,7 +73,7 @@ class Editor {
 
   /** Goes back to the story before, or forward again. */
   travel(way) {
-    const next = this.past[way](this.story);
+    const next = this.past.travel(way, this.story);
     if (next !== this.story) this.show(next);
   }
 
@@ -267,13 +274,7 @@ class Editor {
       span = Math.abs(now - first) >= edits.SHORTEST ? [Math.min(first, now), Math.max(first, now)] : null;
       this.drawSpan(span);
     };
-    const end = () => {
-      ruler.removeEventListener("pointermove", drag);
-      if (span) this.edit({ ...this.story, span });
-    };
-    ruler.addEventListener("pointermove", drag);
-    ruler.addEventListener("pointerup", end, { once: true });
-    ruler.addEventListener("pointercancel", end, { once: true });
+    follow(ruler, drag, () => span && this.edit({ ...this.story, span }));
   }
 
   stretchBy(event, index) {
@@ -286,18 +287,13 @@ class Editor {
       next = edits.stretch(story, index, before + (moved.clientX - from) / wide);
       this.find(".pds-hint").textContent = say("story.beat_length", { number: index + 1, seconds: next.beats[index].seconds });
     };
-    const end = () => {
-      window.removeEventListener("pointermove", drag);
-      if (next !== story) this.edit(next);
-    };
-    window.addEventListener("pointermove", drag);
-    window.addEventListener("pointerup", end, { once: true });
+    follow(window, drag, () => next !== story && this.edit(next));
   }
 
   tick() {
     if (!this.root.isConnected) return clearInterval(this.timer);
     const { player } = this;
-    if (player && player.director !== this) player.direct(this);
+    if (player && player.directing.director !== this) player.directing.direct(this);
     const seconds = player?.data ? player.clock.duration : 0;
     if (seconds !== this.shown) {
       this.shown = seconds;

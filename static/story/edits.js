@@ -148,15 +148,11 @@ export class Past {
     this.after = [];
   }
 
-  undo(now) {
-    if (!this.before.length) return now;
-    this.after.push(now);
-    return this.before.pop();
-  }
-
-  redo(now) {
-    if (!this.after.length) return now;
-    this.before.push(now);
-    return this.after.pop();
+  /** Goes from the story of now to the one before it ("undo") or after it ("redo"), if there is one. */
+  travel(way, now) {
+    const [from, to] = way === "undo" ? [this.before, this.after] : [this.after, this.before];
+    if (!from.length) return now;
+    to.push(now);
+    return from.pop();
   }
 }

@@ -9,7 +9,7 @@ const SOONEST = 1000; // milliseconds before which nobody has seen a pair: a key
 
 const main = document.querySelector(".pst");
 const find = (selector) => main.querySelector(selector);
-const { here, plotly } = main.dataset;
+const { here } = main.dataset;
 const buttons = [...main.querySelectorAll("[data-answer]")];
 
 follow();
@@ -78,5 +78,5 @@ addEventListener("keydown", (event) => {
   button.click(); // does nothing while it is disabled
 }, true);
 
-mount(find(".pst-stage"), props, (names, changed) => watchers.push(changed), null, { plotly, empty: "" });
+mount(find(".pst-stage"), props, (names, changed) => watchers.push(changed), null, "");
 go("next");

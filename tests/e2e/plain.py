@@ -39,7 +39,7 @@ PAGE = """<!doctype html>
     localStorage.clear();
     host.replaceChildren(document.getElementById("fresh").content.cloneNode(true));
     props = { value: null, busy: "", progress: null, live: null };
-    mount(host, props, (names, act) => (changed = act), null, { plotly: "/plotly.js" });
+    mount(host, props, (names, act) => (changed = act), null);
   };
   for (const button of document.querySelectorAll("nav button")) {
     button.onclick = async () => {
@@ -79,7 +79,7 @@ class Handler(SimpleHTTPRequestHandler):
                 "buttons": "".join(f"<button>{name}</button>" for name in UPDATES),
             }
             self._send((PAGE % parts).encode(), "text/html; charset=utf-8")
-        elif address.path == "/plotly.js":
+        elif address.path == "/plotly/plotly-gl3d.min.js":
             self._send(plotly(), "text/javascript")
         elif address.path.removeprefix("/update/") in UPDATES:
             self._send(update(address.path.removeprefix("/update/")), "application/json")

@@ -31,7 +31,7 @@ def drawing(shared_page: Page) -> Page:
     page.evaluate(
         """() => { const { player } = window.__pasdedeux;
         player.clock.pause(); player.clock.seek(0); player.orbit.elevation = 1.2;
-        player.director.open([]); player.directing.drawing.toggle(false); player.refresh(); }"""
+        player.directing.director.open([]); player.directing.drawing.toggle(false); player.refresh(); }"""
     )
     page.click(TOOL)
     until(page, "document.querySelector('#player .pdd-grip')?.style.transform && window.__pasdedeux.loops === 0")
@@ -56,7 +56,7 @@ def drag(page: Page, person: str, *by: tuple[float, float]) -> None:
 
 
 def paths(page: Page) -> list[dict[str, Any]]:
-    return page.evaluate("window.__pasdedeux.player.director.paths")
+    return page.evaluate("window.__pasdedeux.player.directing.director.paths")
 
 
 def chips(page: Page) -> Any:
@@ -138,7 +138,7 @@ def test_a_kept_run_brings_its_paths_back(drawing: Page, server: Any) -> None:
     drag(page, "a", (-120, 0))
     generated(page, server, "A bows to B.")
     (path,) = paths(page)
-    page.evaluate("window.__pasdedeux.player.director.open([])")
+    page.evaluate("window.__pasdedeux.player.directing.director.open([])")
     page.get_by_role("tab", name="History").click()
     expect(page.locator(".pdn-card").first).to_contain_text("A bows to B.")
     page.click("#history-open")

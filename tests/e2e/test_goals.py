@@ -25,12 +25,15 @@ ACTIONS = """() => [...document.querySelectorAll(".pd-actions > *")]
     .map((each) => each.getBoundingClientRect()).filter(({ height }) => height > 0)
     .map(({ top, bottom }) => [top, bottom])"""
 
+BEGAN = """addEventListener("DOMContentLoaded", () => (window.began = document.querySelector(".pdd-early .pdd")))"""
+
 
 def opened(lab: str, open_page: Callable[..., Page], width: int, height: int) -> tuple[Page, list[float], float]:
     """A page of a browser that has seen none, once its example plays, the bytes of each answer, and the seconds."""
     sizes: list[float] = []
 
     def listen(tab: Page) -> None:
+        tab.add_init_script(BEGAN)
         session = tab.context.new_cdp_session(tab)
         session.send("Network.enable")
         session.on("Network.loadingFinished", lambda event: sizes.append(event["encodedDataLength"]))
@@ -48,8 +51,14 @@ def test_little_is_in_sight_and_the_actions_on_a_result_are(
     page, sizes, seconds = opened(lab, open_page, width, height)
     loaded = sum(sizes)
     asked = page.evaluate("performance.getEntriesByType('resource').map(({ name }) => name.split('/').at(-1))")
-    part = next(place for place, name in enumerate(asked) if name.startswith("HTML-"))
-    assert max(map(asked.index, ("plotly-gl3d.min.js", "scene.js"))) < part, "loads while Gradio begins"
+    assert "plotly-gl3d.min.js" in asked
+    assert not {"scene.js", "main.js", "texts.js"}.intersection(asked), (
+        "the document brings the scripts that it begins with"
+    )
+    page.wait_for_selector("#player .pdd")
+    assert page.evaluate("began === document.querySelector('#player .pdd') && __pasdedeux.count === 1"), (
+        "it plays first"
+    )
     plain = page.evaluate("Object.getPrototypeOf(window.gradio_config.dependencies[0]) === Object.prototype")
     assert not plain, "Svelte would watch each event's parts"
     live(page)

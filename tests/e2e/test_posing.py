@@ -19,7 +19,7 @@ PULL = """async ([pose, joint, target]) => {
 }"""
 DIRECT = """() => {
     window.kept = [];
-    window.__pasdedeux.player.direct({
+    window.__pasdedeux.player.directing.direct({
         posesAt: () => [null, null],
         keepPoses: (frame, poses) => window.kept.push({ frame, poses }),
     });

@@ -1,7 +1,6 @@
 """What the page's document says before Gradio's own script runs, where its ``head`` option cannot put anything.
 
-* The player's scripts load and make an empty 3D scene while Gradio's load, so that the example plays as soon as the
-  page has a place for it.
+* The player's scripts are part of the document, and the example plays while Gradio's load, where Gradio will put it.
 * Gradio's events are no plain objects, so that Svelte, which watches whatever is plain, puts no proxy around each of
   their parts. Gradio looks through all of them for every component and changes none.
 * An animation that Gradio leaves running is stopped, so that a page left open lets the browser sleep: its loading
@@ -18,12 +17,22 @@ from urllib.parse import quote
 from gradio.routes import templates
 from jinja2 import ChoiceLoader, DictLoader
 
-from .components.player import PLAYER_FOLDER, PLOTLY_JS
-from .text.texts import TEXTS_JS
+from .bundle import bundled
+from .components.finder import Finder
+from .components.gallery import Gallery
+from .components.player import PLOTLY_JS, MotionPlayer
+from .components.reading import Reading
+from .theme import COLOURS
 
 PAGE = "frontend/index.html"
+FIRST = (MotionPlayer, Reading, Finder, Gallery)
+"""The parts of the page that are seen first."""
 _FILE = "{{ (config.get('root') or '').rstrip('/') }}{{ config.get('api_prefix', '/gradio_api') }}/file="
-_BEGIN = r"""%(modules)s<link rel="preload" as="script" href="%(plotly)s">
+_BEGIN = r"""<link rel="preload" as="script" href="%(plotly)s">
+<style>%(colours)s
+body { background: var(--pd-bg) !important; }
+.pdd:not(.pdd-styled), body .gradio-container > .main > .wrap:has(> .loading) { visibility: hidden; }
+</style>
 <script>
 (() => {
   const ask = window.requestAnimationFrame.bind(window);
@@ -32,8 +41,9 @@ _BEGIN = r"""%(modules)s<link rel="preload" as="script" href="%(plotly)s">
   const unlike = Object.create(Object.prototype);
   for (const each of window.gradio_config.dependencies ?? []) Object.setPrototypeOf(each, unlike);
 })();
-</script>
-<script type="module">import("%(player)s").then((player) => player.warm());</script>"""
+</script>"""
+_PLAY = """<script>{%% raw %%}%(modules)s{%% endraw %%}
+window.pdModules["%(player)s"].begin(window.gradio_config);</script>"""
 
 
 def _address(path: Path) -> str:
@@ -46,9 +56,9 @@ def begin_early() -> None:
     loader = templates.env.loader
     if loader is not None and not isinstance(loader, ChoiceLoader):
         page, *_ = loader.get_source(templates.env, PAGE)
-        modules = [TEXTS_JS, *sorted(PLAYER_FOLDER.rglob("*.js"))]
-        links = "".join(f'<link rel="modulepreload" href="{_address(path)}">' for path in modules)
-        named = {"plotly": _address(PLOTLY_JS), "player": _address(PLAYER_FOLDER / "main.js")}
-        begin = _BEGIN % {"modules": links, **named}
-        ours = DictLoader({PAGE: page.replace("</head>", f"{begin}</head>", 1)})
-        templates.env.loader = ChoiceLoader([ours, loader])
+        begin = _BEGIN % {"plotly": _address(PLOTLY_JS), "colours": COLOURS.read_text(encoding="utf-8")}
+        scripts = [part.template.parent / part.module for part in FIRST]
+        modules = bundled(scripts, lambda path: f"{{% endraw %}}{_address(path)}{{% raw %}}")
+        play = _PLAY % {"modules": modules, "player": _address(scripts[0])}
+        page = page.replace("</head>", f"{begin}</head>", 1).replace("</body>", f"{play}</body>", 1)
+        templates.env.loader = ChoiceLoader([DictLoader({PAGE: page}), loader])

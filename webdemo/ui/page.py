@@ -33,8 +33,6 @@ from .runs import EngineLike, HealthLike
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
-TABS = (GenerateTab, SceneTab, ReactTab, PredictTab)
-"""A class a job, with a ``label``, the key of its shown name, ``named``, and ``build(record)``."""
 
 _WRITE = """() => {
   const tab = document.activeElement;
@@ -132,20 +130,16 @@ def start_queue(page: gr.Blocks, make: Callable[..., Queue]) -> None:
 def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
     """A tab for every job, and the history."""
     record = gr.State(None, time_to_live=3600)
-    jobs: dict[str, JobTab] = {kind.label.lower(): kind(page) for kind in TABS}
+    generate, scene, react, predict = GenerateTab(page), SceneTab(page), ReactTab(page), PredictTab(page)
+    jobs: dict[str, JobTab] = {job.label.lower(): job for job in (generate, scene, react, predict)}
     with gr.Tabs(elem_classes="pd-tabs") as tabs:
         shown: dict[str, gr.Tab] = {}
         for name, job in jobs.items():
             with gr.Tab(say(job.named), id=name) as shown[name]:
                 job.build(record)
-        scene, first = jobs["scene"], jobs["generate"].results.player
         shown["scene"].select(None, js=_WRITE % json.dumps(scene.prefix + "prompt"), **QUIET)
-        own = scene.results.player
+        first, own = generate.results.player, scene.results.player
         shown["scene"].select(None, inputs=[own, first], outputs=own, js=_BEGIN_WITH, **QUIET)
-        predict = jobs["predict"]
-        assert isinstance(predict, PredictTab)
-        react = jobs["react"]
-        assert isinstance(react, ReactTab)
         react.actor.wire_arrival(shown["react"], record, react.label)
         predict.wire_page(shown["predict"], tabs, [job.results for job in jobs.values()])
         with gr.Tab(say("tabs.history"), id=HISTORY.lower()) as past:

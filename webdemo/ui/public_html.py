@@ -15,6 +15,7 @@ from jinja2 import Environment, FileSystemLoader
 
 from webdemo.inference.methods import label_of
 from webdemo.ui.components.notebook import made_by
+from webdemo.ui.components.part import STATIC
 from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.history import Entry
 from webdemo.ui.text.texts import TEXTS, TEXTS_JS, say
@@ -22,14 +23,9 @@ from webdemo.ui.theme import COLOURS
 from webdemo.view.payload import Payload
 
 SHARE_FOLDER = PLAYER_FOLDER.parent / "share"
-FILES = {
-    "plotly.min.js": PLOTLY_JS,
-    **{f"share/{name}": SHARE_FOLDER / name for name in ("share.js", "share.css")},
-    "player/player.css": PLAYER_FOLDER / "player.css",
-    **{f"player/{path.relative_to(PLAYER_FOLDER).as_posix()}": path for path in sorted(PLAYER_FOLDER.rglob("*.js"))},
-    **{f"bodies/{path.name}": path for path in sorted(BODIES_FOLDER.glob("*.json"))},
-    **{path.name: path for path in (COLOURS, TEXTS_JS, TEXTS)},
-}
+_LOADED = (PLOTLY_JS, COLOURS, TEXTS_JS, TEXTS, SHARE_FOLDER / "share.js", SHARE_FOLDER / "share.css")
+_PLAYED = (PLAYER_FOLDER / "player.css", *sorted(PLAYER_FOLDER.rglob("*.js")), *sorted(BODIES_FOLDER.glob("*.json")))
+FILES = {path.relative_to(STATIC).as_posix(): path for path in (*_LOADED, *_PLAYED)}
 """All that the pages load, by the names under which they do."""
 
 

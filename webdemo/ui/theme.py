@@ -123,5 +123,5 @@ def theme() -> gr.themes.Base:
 
 
 def style_sheet() -> str:
-    """The page's own CSS, beside what the theme sets."""
-    return "".join(path.read_text(encoding="utf-8") for path in (COLOURS, STYLE))
+    """The page's own CSS, beside what the theme sets and the colours, with which the document begins."""
+    return STYLE.read_text(encoding="utf-8")

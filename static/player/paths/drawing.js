@@ -28,7 +28,7 @@ export class Drawing {
   }
 
   get director() {
-    return this.player.director;
+    return this.player.directing.director;
   }
 
   /** The paths for the next run, with the one that is drawn now. */

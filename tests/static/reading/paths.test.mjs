@@ -7,7 +7,7 @@ import { Paths } from "../../../static/reading/paths.js";
 
 /** A place of the page with a list of paths and a player in its tab. */
 function place(isConnected) {
-  const player = { directed: 0, direct: () => player.directed++ };
+  const player = { directed: 0, directing: { direct: () => player.directed++ } };
   const list = { addEventListener: () => {}, replaceChildren: () => {}, append: () => {} };
   const lab = { querySelector: () => ({ player }) };
   return { isConnected, player, parentElement: { querySelector: () => list }, closest: () => lab };

@@ -13,7 +13,7 @@ from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Progress, Result
 from webdemo.ui.components.player import result_payload
-from webdemo.ui.text.panels import all_notes, effect_line, model_state, notes_lines, readout_panel, status
+from webdemo.ui.text.panels import effect_line, model_state, notes_lines, readout_panel, status
 from webdemo.ui.text.words import cancelled_line, progress_line, text
 
 HOSTILE = "<img src=x onerror=alert(1)> ${alert(2)} {{value}} `x` \"quoted\" 'single'"
@@ -35,7 +35,7 @@ def test_text_is_escaped_and_comes_back_the_same() -> None:
     [
         status(HOSTILE, tone="error"),
         model_state("failed", HOSTILE),
-        notes_lines(Result(duets=result().duets, manifest={}, notes=(HOSTILE,))),
+        notes_lines({"": Result(duets=result().duets, manifest={}, notes=(HOSTILE,))}),
         readout_panel(Result(duets=result().duets, manifest={"request": {"kind": "react", "model": HOSTILE}})),
     ],
 )
@@ -50,12 +50,12 @@ def test_readouts_show_what_was_before_and_what_is_better() -> None:
     for words in ("before → after damping", "Foot skate", "Jerk", "Penetration", "Bone drift"):
         assert words in made
     assert re.search(r"pd-better\">[\d.]+ → <b>", made)
-    assert "nearest that it knows" in notes_lines(result())
+    assert "nearest that it knows" in notes_lines({"": result()})
 
 
 def test_notes_of_several_results_stand_once_and_say_whose_they_are() -> None:
     one, other = (replace(result(), notes=("Both.", *more)) for more in ((), ("Its own.",)))
-    said = re.findall(r">([^<]+)<", all_notes({"seed 1": one, "seed 2": other}))
+    said = re.findall(r">([^<]+)<", notes_lines({"seed 1": one, "seed 2": other}))
     assert said == ["Both.", "seed 2: Its own."]
 
 

@@ -18,7 +18,7 @@ from webdemo.server.settings import Settings
 from webdemo.server.store.history import History
 from webdemo.server.store.studies import Studies
 from webdemo.study import Pair
-from webdemo.ui.components.player import PLAYER_FOLDER, PLOTLY_JS
+from webdemo.ui.components.player import PLAYER_FOLDER
 from webdemo.ui.components.prediction_view import payload_of
 from webdemo.ui.history import Entry
 from webdemo.ui.public_html import FILES, Place, embed_html, player_html
@@ -127,7 +127,6 @@ def _page(root: str, key: str, question: str) -> str:
     parts = {
         "markup": (PLAYER_FOLDER / "player.html").read_text(encoding="utf-8"),
         "files": f"{root}/gradio_api/file={quote(STUDY_FOLDER.as_posix())}",
-        "plotly": f"{root}/gradio_api/file={quote(PLOTLY_JS.as_posix())}",
         "here": f"{root}/study/{quote(key, safe='')}",
         "question": html.escape(question),
     }

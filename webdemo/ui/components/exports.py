@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from motion import Clip, Duet, InputError, formats
+from motion import Clip, InputError, formats
 from motion.formats import ALONE
 from motion.formats.files import safe_cell
 from webdemo.inference.run import Result
@@ -169,7 +169,10 @@ def _write_kind(kind: str, result: Result, folder: Path, name: str, prompt: str)
     files: list[Path] = []
     for i, duet in enumerate(result.duets):
         path = folder / (f"{name}-{i + 1}.{kind}" if several else f"{name}.{kind}")
-        files += _write_motion(duet, path, title=prompt)
+        if kind == "png":
+            files.append(write_sheet(duet, path, title=prompt, style=_SHEET))
+        else:
+            files += map(Path, formats.write(duet, path))
     return files
 
 
@@ -200,12 +203,6 @@ def _holds(kind: str, result: Result) -> bool:
         return False
     one = isinstance(result.duets[0], Clip)
     return not one or kind in _PLAIN or f".{kind}" in ALONE
-
-
-def _write_motion(duet: Duet | Clip, path: Path, *, title: str) -> list[Path]:
-    if path.suffix == ".png":
-        return [write_sheet(duet, path, title=title, style=_SHEET)]
-    return [Path(written) for written in formats.write(duet, path)]
 
 
 def for_download(files: Mapping[str, list[Path]], name: str | None = None) -> dict[str, Path]:

@@ -18,9 +18,10 @@ _SCRIPT = """
 const config = window.gradio_config || {};
 const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
 const module = root + (config.api_prefix || "/gradio_api") + "/file=" + %s;
-import(module).then((part) => part.mount(element, props, watch, trigger));
+const loaded = window.pdModules?.[module] ?? import(module);
+Promise.resolve(loaded).then((part) => part.mount(element, props, watch, trigger));
 """
-"""JavaScript that gives a part that appears to its module; to be filled with the module's path."""
+"""JavaScript that gives a part that appears to its module, which may be here already; to be filled with its path."""
 
 
 class Part(gr.HTML):

@@ -26,7 +26,7 @@ from webdemo.ui.components.sweep import (
     whole,
 )
 from webdemo.ui.history import Opened
-from webdemo.ui.text.panels import all_notes, status, total
+from webdemo.ui.text.panels import notes_lines, status, total
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import seconds
 
@@ -126,7 +126,7 @@ class Grids:
         spent = seconds(sum(map(total, made.values())))
         yield {
             **grid_shown(grid, made, title) | tab.laid_out(made.values()) | tab.beside_grid(made, asked),
-            "line": status(f"{len(wanted)} results done in {spent}.", tone="done") + all_notes(made),
+            "line": status(f"{len(wanted)} results done in {spent}.", tone="done") + notes_lines(made),
             "under": gr.update(visible=True),
             **tab.results.fresh(),
         }

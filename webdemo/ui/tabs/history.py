@@ -51,7 +51,7 @@ class HistoryTab:
     def __init__(self, page: PageContext, jobs: Mapping[str, JobTab], tabs: gr.Tabs) -> None:
         self.page, self.jobs, self.tabs = page, jobs, tabs
         self.history: HistoryLike = page.history
-        self.files = FilesPanel(page, self.history, self.refresh)
+        self.files = FilesPanel(page, self.refresh)
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -115,8 +115,9 @@ class HistoryTab:
             action = Action.read(event._data)
             search, owner = action.wanted, visitor().owner
             if action.act == "link":
-                link, until = self._link(action.one, owner)
-                line, address = status(until, tone="done"), gr.update(value=link, visible=True)
+                key, until = self.history.link(action.one, owner)
+                address = gr.update(value=f"{visitor().base}?run={key}", visible=True)
+                line = status(link_line(until), tone="done")
             elif action.act == "export":
                 line, saved = self.files.export(action.ids)
             elif action.act == "remove":
@@ -149,10 +150,6 @@ class HistoryTab:
             self.history.describe(run, owner, title=action.title, tags=action.tags, note=action.note)
             return "Saved."
         raise InputError(UNKNOWN)
-
-    def _link(self, run: str, owner: str) -> tuple[str, str]:
-        key, until = self.history.link(run, owner)
-        return f"{visitor().base}?run={key}", link_line(until)
 
     @said
     def open(self, event: gr.EventData) -> Parts:

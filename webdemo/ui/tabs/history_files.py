@@ -9,7 +9,7 @@ from typing import Any
 import gradio as gr
 
 from webdemo.ui.context import PageContext
-from webdemo.ui.history import HistoryLike, Usage
+from webdemo.ui.history import Usage
 from webdemo.ui.places import READING
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
@@ -27,12 +27,11 @@ class FilesPanel:
 
     Args:
         page: what the tabs share; its history is there.
-        history: of the page.
         refresh: reads the list of runs anew.
     """
 
-    def __init__(self, page: PageContext, history: HistoryLike, refresh: Callable[[list[str]], Updates]) -> None:
-        self.page, self.history, self.refresh = page, history, refresh
+    def __init__(self, page: PageContext, refresh: Callable[[list[str]], Updates]) -> None:
+        self.page, self.history, self.refresh = page, page.history, refresh
 
     def build(self) -> None:
         """Lays out the panel, folded."""

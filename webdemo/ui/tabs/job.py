@@ -349,7 +349,7 @@ class JobTab(ABC):
         record = Record(result, title)
         return {
             "player": show(payload_of(result, title=title)),
-            "line": status(made_line(result), tone="done") + notes_lines(result),
+            "line": status(made_line(result), tone="done") + notes_lines({"": result}),
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),
             "record": record,
@@ -367,7 +367,7 @@ class JobTab(ABC):
         asked = run.entry.request
         made = time.strftime("%Y-%m-%d %H:%M", time.gmtime(run.entry.created))
         shown = self.shown(run.result, run.entry.title)
-        shown["line"] = status(f"Made on {made} UTC.", tone="done") + notes_lines(run.result)
+        shown["line"] = status(f"Made on {made} UTC.", tone="done") + notes_lines({"": run.result})
         known = {**asked, **run.kept.controls}
         values = {name: known[name] for name in self._knobs() if name in known}
         return {

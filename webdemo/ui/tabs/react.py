@@ -170,7 +170,7 @@ class ReactTab(JobTab):
         take = take_of(fields["live"])
         result = yield from self.made(session, take)
         said = status(f"Kept: {seconds(take.actor.seconds)} live.", tone="done")
-        yield self.shown(result, take.title) | {"line": said + notes_lines(result)}
+        yield self.shown(result, take.title) | {"line": said + notes_lines({"": result})}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the method with what it lets be set, and the given person."""

@@ -148,16 +148,13 @@ class Results:
                 gr.HTML(f'<p class="pd-purpose">{purpose}</p>', padding=False)
                 with gr.Row(elem_classes="pd-downloads"):
                     for key in keys:
-                        self._download(key)
+                        named = say(f"files.{key}"), key.replace(".", "-")
+                        self._buttons[key] = self._saved(*named, visible=offered(key))
                     if "png" in keys:
                         self.picture = self._button("result.picture", "picture")
                         self.drawn = {key: self._button(key, key.split(".")[1]) for key in DRAWN}
             self.saved = self._saved(say("files.film"), "drawn", elem_classes="pd-drawn")
             self.player_state = gr.Textbox(visible=False)
-
-    def _download(self, key: str) -> None:
-        """The button of one kind of file."""
-        self._buttons[key] = self._saved(say(f"files.{key}"), key.replace(".", "-"), visible=offered(key))
 
     @property
     def downloads(self) -> list[gr.DownloadButton]:

@@ -9,7 +9,7 @@ import gradio as gr
 
 from webdemo.ui.components.fields import address_field
 from webdemo.ui.components.notebook import Action
-from webdemo.ui.history import HistoryLike, PublicPage
+from webdemo.ui.history import HistoryLike
 from webdemo.ui.public_html import frame_code
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
@@ -77,7 +77,10 @@ class SharingPanel:
         link = mine.get(key or "") or next(iter(mine.values()))
         return {
             self.reading: gr.update(visible=True),
-            self.which: gr.update(choices=[(_about(page), page.key) for page in mine.values()], value=link.key),
+            self.which: gr.update(
+                choices=[(f"{page.title[:60]} (until {_day(page.until)})", page.key) for page in mine.values()],
+                value=link.key,
+            ),
             self.link: f"{who.base}share/{link.key}",
             self.frame: frame_code(f"{who.base}embed/{link.key}", link.title),
         }
@@ -88,10 +91,6 @@ class SharingPanel:
         self.history.end_page(key or "", visitor().owner)
         line = status("The page has ended: its address shows nothing any more.", tone="done")
         return self._shown(None) | {self.line: line}
-
-
-def _about(page: PublicPage) -> str:
-    return f"{page.title[:60]} (until {_day(page.until)})"
 
 
 def _day(moment: float) -> str:

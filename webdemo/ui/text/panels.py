@@ -49,13 +49,8 @@ def made_line(result: Result) -> str:
     return f"{made}{within}{chosen}."
 
 
-def notes_lines(result: Result) -> str:
-    """The notes of a result, but for the verdict on its acts."""
-    return all_notes({"": result})
-
-
-def all_notes(results: Mapping[str, Result]) -> str:
-    """The notes of several results, each once: those of some only begin with the names of these."""
+def notes_lines(results: Mapping[str, Result]) -> str:
+    """The notes of results by name, but for verdicts on acts, each once: those of some only begin with their names."""
     named: dict[str, list[str]] = {}
     for name, result in results.items():
         for note in result.notes:

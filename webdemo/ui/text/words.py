@@ -19,6 +19,8 @@ from .texts import texts
 
 log = logging.getLogger(__name__)
 
+_WORK = {"step": "Denoising", "pass": "Predicting"}
+"""What is done, by the unit in which it is counted."""
 _ROLES = {"a": "acts first", "b": "reacts"}
 _PACE_STEPS = 3
 """Steps after which the pace is known, or a tenth of them all."""
@@ -38,21 +40,11 @@ def progress_line(progress: Progress) -> str:
         left = progress.seconds_left
         soon = "" if left is None else f", about {_about(left)} until it starts"
         return f"Waiting in line: place {progress.step} of {progress.total}{soon} …"
+    line = texts().get(f"stage.{progress.stage}", f"{progress.stage.capitalize()} …")
     if progress.stage == "sample":
-        line = _sampling_line(progress)
-    else:
-        line = texts().get(f"stage.{progress.stage}", f"{progress.stage.capitalize()} …")
+        work = _WORK.get(progress.unit, "Generating")
+        line = f"{work}: {progress.unit} {progress.step} of {progress.total}{_left(progress)}"
     return f"{tries_line(progress)}{line}"
-
-
-def _sampling_line(progress: Progress) -> str:
-    """The work that is counted, by its unit."""
-    step, total, left = progress.step, progress.total, _left(progress)
-    if progress.unit == "step":
-        return f"Denoising: step {step} of {total}{left}"
-    if progress.unit == "pass":
-        return f"Predicting: pass {step} of {total}{left}"
-    return f"Generating: {progress.unit} {step} of {total}{left}"
 
 
 def tries_line(progress: Progress) -> str:
