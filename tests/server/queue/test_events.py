@@ -199,8 +199,9 @@ def test_a_session_that_is_not_there_ends_no_queue(tmp_path: Path) -> None:
         assert client.post(f"{CALL}/generate", json=body).status_code == 400
         queue.pending_messages_per_session.max_size = 1  # of so many, the oldest go
         calls = [client.post(f"{CALL}/generate", json={"data": FIELDS}).json()["event_id"] for _ in range(3)]
-        assert "event: complete" in client.get(f"{CALL}/generate/{calls[-1]}").text
+        wait_for(lambda: queue.stopped or len(queue._answers) == len(calls))
         assert not queue.stopped and not lab_of(client).health.stuck()
+        assert "event: complete" in client.get(f"{CALL}/generate/{calls[-1]}").text
         queue.stopped = True
         assert "The queue of events has made no progress" in lab_of(client).health.stuck()
         queue.stopped = False

@@ -44,7 +44,7 @@ def made(request: Any) -> Result:
 
 def kept(history: Notebook, prompt: str = "Two people walk.", *, owner: str = ME, **fields: Any) -> str:
     request = GenerateRequest(prompt=prompt, **({"seconds": 1.0, "steps": 1, "samples": 2} | fields))
-    run = history.begin(owner, request, prompt)
+    run = history.begin(owner, request.to_dict(), prompt)
     history.finish(run, made(request))
     return run
 
@@ -66,7 +66,7 @@ def test_a_prediction_keeps_its_marker_and_what_really_followed(history: Noteboo
     engine = Engine(Path("no weights are needed"))
     request = PredictRequest(motion=motion if people == 2 else motion.a, marker=marker, seconds=1.0, model="still")
     *_, result = engine.run(request)
-    run = history.begin(ME, request, "After")
+    run = history.begin(ME, request.to_dict(), "After")
     history.finish(run, result)
     opened = history.open(run, ME)
     kept = opened.result
@@ -140,7 +140,7 @@ def test_a_clock_that_jumps_removes_nothing_until_it_is_steady(history: Notebook
 def test_a_full_disk_in_the_middle_of_a_run_leaves_it_ended(history: Notebook) -> None:
     """SQLite's own limit stands for the disk; what could not be written is said at the next start."""
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
-    run = history.begin(ME, request, "x")
+    run = history.begin(ME, request.to_dict(), "x")
     with no_room(history.database):
         history.end(run, "failed", "y" * 100_000)
         assert [entry.state for entry in entries(history)] == ["running"]
@@ -150,7 +150,7 @@ def test_a_full_disk_in_the_middle_of_a_run_leaves_it_ended(history: Notebook) -
 
 def test_a_result_that_does_not_fit_is_a_sentence_and_leaves_no_files(history: Notebook) -> None:
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
-    run = history.begin(ME, request, "x")
+    run = history.begin(ME, request.to_dict(), "x")
     with no_room(history.database), pytest.raises(InputError, match="disk is full"):
         history.finish(run, replace(made(request), notes=("y" * 100_000,)))
     history.recover()
@@ -175,7 +175,7 @@ def test_a_damaged_database_is_a_sentence_and_no_sql(history: Notebook) -> None:
 
 def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: Notebook) -> None:
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
-    run = history.begin(ME, request, "removed")
+    run = history.begin(ME, request.to_dict(), "removed")
     history.delete(run, ME)
     history.finish(run, made(request))
     assert entries(history) == [] and not any(history.folder.iterdir())
@@ -184,7 +184,7 @@ def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: Notebook) 
 def test_what_a_killed_process_left_is_marked(history: Notebook) -> None:
     whole = kept(history)
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0)
-    lost = history.begin(ME, request, "lost")
+    lost = history.begin(ME, request.to_dict(), "lost")
     half = history.folder / f".{lost}"
     half.mkdir()
     (half / "1.npz").write_bytes(b"half")
@@ -200,7 +200,7 @@ def test_what_a_killed_process_left_is_marked(history: Notebook) -> None:
 def test_a_full_disk_is_a_sentence_and_leaves_nothing(history: Notebook, monkeypatch: pytest.MonkeyPatch) -> None:
     before = kept(history)
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1, samples=2)
-    run = history.begin(ME, request, "full")
+    run = history.begin(ME, request.to_dict(), "full")
 
     def full(duet: Any, path: Path) -> None:
         Path(path).write_bytes(b"half a file")
@@ -214,7 +214,7 @@ def test_a_full_disk_is_a_sentence_and_leaves_nothing(history: Notebook, monkeyp
     assert entries(history)[0].state == "failed"
     history.storage.free_bytes = 1e18
     with pytest.raises(InputError, match="disk is full"):
-        history.begin(ME, request, "more")
+        history.begin(ME, request.to_dict(), "more")
     history.open(before, ME)
 
 

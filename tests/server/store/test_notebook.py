@@ -26,7 +26,7 @@ PLAN = KeptPlan(windows=(WindowPlan((1.0, 2.0, 0.5)),))
 
 def kept(notebook: Notebook, prompt: str = "Two people walk.", *, owner: str = ME, **fields: Any) -> str:
     request = GenerateRequest(prompt=prompt, **({"seconds": 1.0, "steps": 1} | fields))
-    run = notebook.begin(owner, request, prompt)
+    run = notebook.begin(owner, request.to_dict(), prompt)
     *_, result = stub_module().StubEngine().run(request)
     notebook.finish(run, replace(result, manifest={**result.manifest, "plan": PLAN.to_dict()}))
     return run
@@ -66,7 +66,7 @@ def test_runs_are_found_by_words_method_tag_star_and_date(notebook: Notebook) ->
 
 def test_hundreds_of_runs_are_found_at_once(notebook: Notebook) -> None:
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
-    runs = [notebook.begin(ME, request, f"Walk {i}") for i in range(400)]
+    runs = [notebook.begin(ME, request.to_dict(), f"Walk {i}") for i in range(400)]
     for run in runs[::2]:
         notebook.describe(run, ME, tags="even")
     began = time.process_time()
@@ -98,7 +98,7 @@ def test_a_removed_run_opens_for_nobody_and_can_be_brought_back(
 def test_how_a_tab_was_set_comes_back_for_its_owner_alone(notebook: Notebook) -> None:
     pair = stub_module().walking(2.0)
     request = ReactRequest(actor=pair.a, model="intergen", steps=1)
-    run = notebook.begin(ME, request, "Reaction")
+    run = notebook.begin(ME, request.to_dict(), "Reaction")
     *_, result = stub_module().StubEngine().run(request)
     notebook.finish(run, result)
     other = kept(notebook)
@@ -163,6 +163,7 @@ HOSTILE: dict[str, Callable[[Path], Any]] = {
     "an unknown kind": _claiming({"request": {"kind": "../../x"}}),
     "a kind that is none": _claiming({"request": {"kind": ["scene"]}}),
     "a scene without a story": _claiming({"request": {"kind": "scene", "beats": 3}}),
+    "a request by which a search takes a gigabyte": _claiming({"request": {"kind": "generate", "x": [0.5] * 700_000}}),
     "millions of numbers": _claiming({"request": {"kind": "generate", "x": [0] * 2_000_000}}),
 }
 

@@ -37,7 +37,7 @@ def notebook(tmp_path: Path) -> Iterator[Notebook]:
 
 def kept(notebook: Notebook, owner: str, seed: int = 0) -> str:
     request = GenerateRequest(prompt="They walk.", seconds=2.0, steps=1, seed=seed)
-    run = notebook.begin(owner, request, "They walk.")
+    run = notebook.begin(owner, request.to_dict(), "They walk.")
     *_, result = stub_module().StubEngine().run(request)
     notebook.finish(run, result)
     return run

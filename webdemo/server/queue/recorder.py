@@ -38,9 +38,8 @@ class Recorder:
         Raises:
             InputError: as well where nothing can be written down.
         """
-        who = visitor()
-        title = title_of(request.to_dict())
-        run = self.history.begin(who.owner, request, title, address=who.address) if who.owner else ""
+        who, asked = visitor(), request.to_dict()
+        run = self.history.begin(who.owner, asked, title_of(asked), address=who.address) if who.owner else ""
         state, message = "refused", ""
         try:
             for event in self.queue.run(session, request):

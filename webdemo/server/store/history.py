@@ -8,7 +8,7 @@ import re
 import secrets
 import shutil
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
@@ -79,12 +79,12 @@ class History:
     # ---- while a run goes on ---------------------------------------------------------------------
 
     @sentences()
-    def begin(self, owner: str, request: Any, title: str, *, address: str = "") -> str:
+    def begin(self, owner: str, asked: Mapping[str, Any], title: str, *, address: str = "") -> str:
         """Writes down that a run was asked for; returns its id.
 
         Args:
             owner: whose run it is.
-            request: that was asked for.
+            asked: the request as plain values.
             title: of the run.
             address: that it comes from, where strangers are known by cookies that they could throw away.
 
@@ -92,7 +92,6 @@ class History:
             InputError: if the disk is nearly full, or the owner has no room and nothing that can make way.
         """
         self.storage.check_disk()
-        asked = request.to_dict()
         text = json.dumps(asked)
         run = Run(
             id=secrets.token_urlsafe(18),

@@ -7,11 +7,11 @@ import re
 import zipfile
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import ColumnElement, func, or_, select, true, update
+from sqlalchemy import ColumnElement, case, func, or_, select, true, update
 
 from motion import Clip, Duet, InputError, formats
 from motion.metrics import compare
@@ -34,6 +34,8 @@ MOST_BESIDE = 8
 """Runs of a grid beside its first."""
 MOST_TAKEN = 100
 """Files of one import."""
+LARGEST_REQUEST = 2**16
+"""Characters of a request that is imported: a list of runs reads those of all of them."""
 _KINDS = ("generate", "scene", "react", "predict")
 LARGEST_KEPT = 20_000
 """Characters of the settings of a tab."""
@@ -56,9 +58,10 @@ class Notebook(History):
             total = session.scalar(select(func.count()).select_from(Run).where(*fit)) or 0
             entries = [entry_of(run) for run in session.scalars(query)]
             tags = session.scalars(select(Run.tags).where(*mine, Run.tags != "").distinct())
-            asked = session.scalars(select(Run.request).where(*mine).distinct())
-            models = {str(fields_of(request).get("model", "")) for request in asked} - {""}
-            return Found(entries, total, sorted({tag for line in tags for tag in line.split()}), sorted(models))
+            # SQLite reads them all while other threads go on
+            model = case((func.json_valid(Run.request), func.json_extract(Run.request, "$.model")))
+            models = sorted(str(name) for name in session.scalars(select(model).where(*mine).distinct()) if name)
+            return Found(entries, total, sorted({tag for line in tags for tag in line.split()}), models)
 
     @sentences()
     def entry(self, run: str, owner: str) -> Entry:
@@ -243,26 +246,18 @@ class Notebook(History):
         kind = asked.get("kind", "generate") if isinstance(asked, dict) else ""
         if not isinstance(duet, Duet) or not isinstance(asked, dict) or kind not in _KINDS:
             raise InputError("it holds no result of Pas de Deux: save one as Motion .npz.")
+        if len(json.dumps(asked)) > LARGEST_REQUEST:
+            raise InputError(f"its request has more than {LARGEST_REQUEST:,} characters: no result of the lab's has.")
         if kind == "scene":
             try:
                 SceneRequest.from_dict(asked, duet if "motion" in asked else None)
             except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
                 raise InputError("its scene has no story: save it again.") from None
         title = str(asked.get("prompt") or file.stem)[:500]
-        run = self.begin(owner, _Asked({**asked, "kind": kind}), title, address=address)
+        run = self.begin(owner, {**asked, "kind": kind}, title, address=address)
         self.finish(
             run, Result(duets=(duet,), manifest=manifest or {}, readouts=(compare(None, duet),), timings={}, notes=())
         )
-
-
-@dataclass(frozen=True)
-class _Asked:
-    """A request as a file holds it."""
-
-    fields: dict[str, Any]
-
-    def to_dict(self) -> dict[str, Any]:
-        return self.fields
 
 
 def _with_parts(*runs: str) -> ColumnElement[bool]:

@@ -153,7 +153,8 @@ def _card(entry: Entry) -> dict[str, Any]:
 def made_by(label: str, asked: Mapping[str, Any]) -> list[str]:
     """The method of a request, by its label, the length and the seed, as far as they are known."""
     parts = [label] if label else []
-    parts += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
+    seconds = asked.get("seconds")
+    parts += [f"{seconds:g} s"] if isinstance(seconds, (int, float)) and 0 < seconds < 1e6 else []
     return parts + ([f"seed {asked['seed']}"] if isinstance(asked.get("seed"), int) else [])
 
 
