@@ -136,8 +136,9 @@ class _Preparation:
         word, owner = "", "'s" * following.endswith("'s")
         letter = following.removesuffix("'s")
         if (
-            lower in closed("lettered")
+            (lower in closed("lettered") or self._is_numbered(i))
             and letter in _NUMBERED
+            and self._lower(i + 2) != "times"
             and (owner or _ends_name(self._tokens, i + 2, self._tokens[i + 1][0]))
         ):
             word = (A_NAME if _NUMBERED[letter] else B_NAME) + owner
@@ -153,6 +154,11 @@ class _Preparation:
         ):
             word = lower + following
         return self._as_one(word, i, 2) if word else 0
+
+    def _is_numbered(self, i: int) -> bool:
+        """True for a noun of a person that begins a clause, where a verb follows its number: "boxer two ducks"."""
+        begins = self._lower(i - 1) in ("", ",", ".", ";", "and", "then", "while")
+        return begins and self._words.is_person(self._lower(i)) and self._is_verb(self._lower(i + 2))
 
     def _keeps(self, i: int) -> bool:
         """True for a direction, and for a noun: "turn right past her", "the way up"."""

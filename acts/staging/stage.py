@@ -384,6 +384,7 @@ class _Stage:
         """The moves of people who are free to go; others stay, unless a posture, jump or figure has their legs."""
         low = {*self.changes, *self.jumps, *self.figures}
         moves = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
+        moves = [move for move in moves if move.way != "face" or move.person not in self.changes]  # "sit face to face"
         if {move.person for move in moves if move.way == "to"} == {"a", "b"}:  # they meet for what they do then
             moves = [replace(m, near=m.near or self._reaching().get(m.person, 0.0)) for m in moves]
         going = {move.person for move in moves} | low

@@ -130,7 +130,7 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
     if does == "sits":
         if on_floor(words) and not place:
             return None
-        seats = [noun for noun in nouns_in(words) if noun[1] in SEATS]
+        seats = [noun for noun in nouns_in(f"{words} {act.thing or ''}") if noun[1] in SEATS]
         name, kind = seats[0] if seats else ("chair", "")
         return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
     name, kind = thing_of(act, words)

@@ -24,6 +24,8 @@ def last(text: str) -> Act:
         ("He acts like he's gonna throw the ball.", {"modality": "pretended"}),
         ("They carry a sofa and put it down.", {"thing": "sofa"}),
         ("A touches B's shoulder and then touches his own shoulder.", {"part_of": "a"}),
+        ("Boxer one jabs twice, boxer two ducks.", {"act": "duck", "agents": ("b",)}),
+        ("She hits the man two times.", {"patient": "b", "times": 2}),
         ("They push each other, but neither gives way.", {"agents": ("a", "b"), "polarity": "not"}),
         ("She stops him from falling.", {"act": "fall-down", "agents": ("b",), "polarity": "not"}),
         ("He waves to the patient, who is lying down.", {"already": True}),

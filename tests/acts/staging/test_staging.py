@@ -224,3 +224,7 @@ def test_two_who_dance_are_a_couple_and_one_alone_or_beside_the_other_is_not() -
     alone = score("A dances.")
     assert not alone.hold and figures("A dances.") == {"a": ("dances", 0)} and alone.idle == {"b"}
     assert figures("They dance side by side.").keys() == {"a", "b"} and not score("They dance side by side.").hold
+
+
+def test_two_who_sit_face_to_face_sit() -> None:
+    assert not score("They sit facing each other.").going
