@@ -108,7 +108,7 @@ def _account(plan: Plan, known: Lexicon) -> Account:
                 left.append(parsed.text.span(*_phrase(token)))
             elif by:
                 unsaid.setdefault(by, []).append(parsed.text.span(*_phrase(token)))
-    left = [(i, j) for i, j in left if plan.sentence[i:j].strip() not in (A_NAME, B_NAME, "A", "B")]
+    left = [(i, j) for i, j in left if plan.sentence[i:j].strip().upper() not in ("A", "B")]
     named = {
         of: _quoted([(i, j) for i, j in each if not any(i < y and x < j for x, y in left)], plan.sentence)
         for of, each in unsaid.items()

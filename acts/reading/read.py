@@ -14,6 +14,7 @@ from motion import InputError
 
 from .matching import Found, completed, formations, held, is_next_to, matcher, noun_acts, of_the_last, repeated, seated
 from .parses import Parse, parses
+from .people import A_NAME, B_NAME
 from .reader import Reader
 from .relations import related
 from .spelling import Speller, other_language, unknown
@@ -248,7 +249,8 @@ class _Planner:
     def _left_over(self) -> None:
         """Adds the words that no dictionary has, and those that no act has taken up, to what was not read."""
         unknown = {first for first, _ in self._nonsense}
-        left = [(t.idx, t.idx + len(t)) for t in self._missed if t.idx + len(t) + 1 not in unknown]
+        missed = [t for t in self._missed if t.text not in (A_NAME, B_NAME)]
+        left = [(t.idx, t.idx + len(t)) for t in missed if t.idx + len(t) + 1 not in unknown]
         reasons = [(each, "These words are not known.") for each in self._nonsense]
         reasons += [(each, "These words belong to no act.") for each in merged(left, self._prepared.parsed)]
         for (first, last), why in reasons:
@@ -332,7 +334,7 @@ class _Planner:
             already=self._goes_on(event, match.agents, entry) and not entry.moment,
             seconds=event.seconds,
             side=side if side in ("left", "right", "both") else None,
-            times=None if event.distance and not name.startswith("step") else event.times,
+            times=None if event.distance and (toes or not name.startswith("step")) else event.times,
             manner=(*([ON_TIPTOE] if goes and toes else ()), *event.adverbs[:7]),
             speed=min(max(speed, 0.2), 3.0),
             direction=None if answers else event.direction,

@@ -186,7 +186,8 @@ class _Preparation:
         sided = self._lower(i) in ("left", "right") and self._words.named_part(self._lower(i + 1))
         begun = self._pieces[-1:] and self._pieces[-1][1:] == (start, start)  # a verb was supplied
         within = closed("determiners") | {"left", "right", "and", "or", "with"}
-        if sided and (begun or self._lower(i - 1) not in within):
+        owned = self._lower(i - 2).endswith("'s")  # "under her partner's raised left arm"
+        if sided and (begun or (self._lower(i - 1) not in within and not owned)):
             return [("the", start, start)]  # "drags left leg", where nobody leaves
         bare = i not in self._letters and word.islower() and not word.endswith("s") and word not in ("one", "person")
         if not bare or not _begins(self._lower(i - 1)) or not self._is_bare_person(i) or self._lower(i + 1) == "'":
@@ -386,6 +387,15 @@ def names(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
         is_verb: says whether a word is a form of a verb.
     """
     letters = {}
+    if not {"b", "b's"}.isdisjoint(words) and {"A", "B"}.isdisjoint(words):  # "a sneaks up on b"
+        ends = [not word.isalpha() or word in ("and", "then") for word in (*words[1:], ".")]
+        named = ("b", "b's", "a's")
+        words = [
+            f"{word[0].upper()}{word[1:]}"
+            if word in named or (word == "a" and (ends[i] or _verb_follows(words, i, is_verb)))
+            else word
+            for i, word in enumerate(words)
+        ]
     upper_b = any(word in ("B", "B's") for word in words)
     for i, word in enumerate(words):
         if word in ("A's", "B's"):

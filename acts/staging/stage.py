@@ -295,7 +295,7 @@ class _Stage:
             late=way != "after" and self._late(act),
             metres=act.distance if act.distance is not None and way in ("ahead", "back") else shape.metres,
             near=shape.near,
-            backwards=shape.backwards,
+            backwards=shape.backwards or (way == "away" and act.direction == "back"),
             gait=shape.gait or (ON_TIPTOE if ON_TIPTOE in act.manner else ""),
             rightwards=act.direction in _RIGHTWARDS,
         )

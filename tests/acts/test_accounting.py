@@ -16,7 +16,7 @@ from webdemo.inference.engine import note
     ("sentence", "unread"),
     [
         ("A waves at B.", ()),
-        ("A and B hug.", ()),
+        ("a and b hug", ()),
         ("They stand one metre apart.", ()),
         ("A walks half a circle around B.", ("half",)),
         ("They shake hands and walk away.", ()),

@@ -25,6 +25,8 @@ def last(text: str) -> Act:
         ("They carry a sofa and put it down.", {"thing": "sofa"}),
         ("A touches B's shoulder and then touches his own shoulder.", {"part_of": "a"}),
         ("Boxer one jabs twice, boxer two ducks.", {"act": "duck", "agents": ("b",)}),
+        ("a sneaks up on b and b turns to a", {"agents": ("b",), "patient": "a"}),
+        ("A twirls under B's raised left arm.", {"act": "be-twirled", "patient": "b"}),
         ("She hits the man two times.", {"patient": "b", "times": 2}),
         ("They push each other, but neither gives way.", {"agents": ("a", "b"), "polarity": "not"}),
         ("She stops him from falling.", {"act": "fall-down", "agents": ("b",), "polarity": "not"}),
