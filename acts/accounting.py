@@ -318,15 +318,9 @@ def _is_place(token: Token) -> bool:
 
 def _is_target(token: Token) -> bool:
     """True for a preposition before the person to whom something is done: "on each other"."""
-    people = vocabulary().is_person
-    return token.lower_ in closed("targets") and any(
-        (
-            c.dep_ == "pobj"
-            and ((c.pos_ == "PRON" and c.lower_ != "it") or c.text in (A_NAME, B_NAME) or people(c.lemma_.lower()))
-        )
-        or (c.lower_ == "other" and c.dep_ == "pobj")
-        for c in token.children
-    )
+    targets = [c for c in token.children if c.dep_ == "pobj"] if token.lower_ in closed("targets") else []
+    named = any(c.text in (A_NAME, B_NAME) or vocabulary().is_person(c.lemma_.lower()) for c in targets)
+    return named or any((c.pos_ == "PRON" and c.lower_ != "it") or c.lower_ == "other" for c in targets)
 
 
 def _phrase(token: Token) -> tuple[int, int]:

@@ -389,13 +389,11 @@ def names(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
     letters = {}
     if not {"b", "b's"}.isdisjoint(words) and {"A", "B"}.isdisjoint(words):  # "a sneaks up on b"
         ends = [not word.isalpha() or word in ("and", "then") for word in (*words[1:], ".")]
-        named = ("b", "b's", "a's")
-        words = [
-            f"{word[0].upper()}{word[1:]}"
-            if word in named or (word == "a" and (ends[i] or _verb_follows(words, i, is_verb)))
-            else word
-            for i, word in enumerate(words)
-        ]
+        named = (
+            w in ("b", "b's", "a's") or (w == "a" and (ends[i] or _verb_follows(words, i, is_verb)))
+            for i, w in enumerate(words)
+        )
+        words = [word.capitalize() if name else word for word, name in zip(words, list(named), strict=True)]
     upper_b = any(word in ("B", "B's") for word in words)
     for i, word in enumerate(words):
         if word in ("A's", "B's"):

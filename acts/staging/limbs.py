@@ -80,7 +80,7 @@ def _posed(angles: Mapping[str, Array], count: int, angle: float) -> Array:
 
 def _stance(limbs: Sequence[Limb]) -> list[int]:
     """The feet that stay on the floor: 0 for the left one, 1 for the right one."""
-    raised = [side for limb in limbs if limb.does in RAISES for side in _legs(limb)]
+    raised = [_side(limb) for limb in limbs if limb.does in RAISES]
     return [i for i, side in enumerate(("left", "right")) if side not in raised] or [0, 1]
 
 
@@ -88,9 +88,9 @@ _SPINE, _HEAD = ("spine1", "spine2", "spine3"), ("neck", "head")
 """Joints of the trunk and of the head that turn together."""
 
 
-def _legs(limb: Limb) -> list[str]:
-    """The legs that are raised; both cannot be at once, so then it is the right one."""
-    return [limb.side if limb.side in ("left", "right") else "right"]
+def _side(limb: Limb) -> str:
+    """The leg that is raised; both cannot be at once, so then it is the right one."""
+    return "left" if limb.side == "left" else "right"
 
 
 def _swing(since: Array, held: Array, times: int, period: float = SWING) -> Array:
@@ -107,12 +107,9 @@ def _pulses(since: Array, held: Array, times: int, period: float = 1.0) -> Array
 
 
 def _leg(limb: Limb, hip: Array, knee: Array, out: Array | float = 0.0) -> Turns:
-    turns: Turns = {}
-    for side in _legs(limb):
-        sign = 1.0 if side == "left" else -1.0
-        turns[f"{side}_hip"] = about(2, sign * np.asarray(out) + np.zeros_like(hip)) @ about(0, -hip)
-        turns[f"{side}_knee"] = about(0, knee)
-    return turns
+    side = _side(limb)
+    spread = about(2, (1.0 if side == "left" else -1.0) * np.asarray(out) + np.zeros_like(hip))
+    return {f"{side}_hip": spread @ about(0, -hip), f"{side}_knee": about(0, knee)}
 
 
 def _both_legs(share: Array, hip: float, knee: float, ankle: float) -> Turns:
@@ -153,7 +150,7 @@ def _stepped(limb: Limb, pulse: Array, hip: float, knee: float) -> Turns:
 def _lunged(limb: Limb, held: Array, since: Array) -> Turns:
     """A long step of the leg that is named, the knees bent, over the other foot, which stays on its toes."""
     down = np.minimum(1.6 * _pulses(since, held, limb.times, LUNGE), 1.0) if limb.times > 1 else held
-    front = _legs(limb)[0]
+    front = _side(limb)
     back = "left" if front == "right" else "right"
     return _leg(limb, 1.1 * down, 1.25 * down) | {
         f"{back}_hip": about(0, 0.4 * down),

@@ -260,13 +260,10 @@ def as_story(scores: Sequence[Score]) -> tuple[Score, ...]:
         moves = (replace(move, sits=move in there) for move in score.moves)
         scores[i] = replace(scores[i], moves=(*moves, *turns)) if there else scores[i]
     for i, score in enumerate(scores):  # a person who is down does not stand by, nor get up for a bow
-        bows = {who for who, figure in score.figures.items() if figure.figure == "bows"}
-        figures = {who: figure for who, figure in score.figures.items() if who not in bows}
-        seen = [*scores[:i], replace(score, figures=figures), *scores[i + 1 :]]
-        down = {who for who, posture in at_start(seen, i).items() if posture != "stands"}
-        if (score.idle | bows) & down:
-            kept = {who: figure for who, figure in score.figures.items() if who not in bows & down}
-            scores[i] = replace(score, idle=score.idle - down, figures=kept)
+        postures = at_start([*scores[:i], replace(score, figures={}), *scores[i + 1 :]], i)
+        down = {who for who, posture in postures.items() if posture != "stands"}
+        kept = {who: each for who, each in score.figures.items() if each.figure != "bows" or who not in down}
+        scores[i] = replace(score, idle=score.idle - down, figures=kept)
     return tuple(scores)
 
 

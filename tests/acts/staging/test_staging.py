@@ -28,7 +28,7 @@ def score(text: str) -> Score:
 def test_shapes_of_several_acts_make_one_beat() -> None:
     both = score("Person A waves while person B sits down.")
     assert both.gestures["a"].gesture == "waves" and both.changes["b"][0].posture == "sits"
-    assert not both.idle
+    assert not both.idle and not score("They sit facing each other.").going
     assert score("Person A salutes.").idle == {"b"}, "who does nothing beside a gesture stands by"
     assert not score("Person A hugs person B.").idle
 
@@ -224,7 +224,3 @@ def test_two_who_dance_are_a_couple_and_one_alone_or_beside_the_other_is_not() -
     alone = score("A dances.")
     assert not alone.hold and figures("A dances.") == {"a": ("dances", 0)} and alone.idle == {"b"}
     assert figures("They dance side by side.").keys() == {"a", "b"} and not score("They dance side by side.").hold
-
-
-def test_two_who_sit_face_to_face_sit() -> None:
-    assert not score("They sit facing each other.").going
