@@ -29,7 +29,7 @@ from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 from webdemo.server.queue.turns import units
 
 from . import PROMPTS
-from .attackers import ATTACKERS, CLIP, WAVE, attack
+from .attackers import ATTACKERS, CLIP, WAVE, attack_apart
 from .server import serving, wait_until
 
 PROBE_EVERY = 1.0
@@ -272,10 +272,9 @@ async def _load(url: str, people: int, minutes: float, steps: int, seed: int) ->
         took = await _crowd(client, calm, people, 30 * minutes, steps, f"{seed}")
         await asyncio.sleep(REST_SECONDS)
         after = await _memory(client)
-        attackers = asyncio.create_task(attack(url))
+        end = attack_apart(url)
         await _crowd(client, attacked, people, 30 * minutes, steps, f"attacked {seed}")
-        attackers.cancel()
-        sent = await attackers
+        sent = end()
     return {
         "people": people,
         "seconds": took,
