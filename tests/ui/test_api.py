@@ -82,6 +82,11 @@ def test_errors_are_the_requests_own_sentences(client: Client, fields: dict[str,
     generate(client, prompt="two people walk", steps=1, seconds=1)
 
 
+def test_a_scene_without_a_story_is_one_sentence(client: Client) -> None:
+    with pytest.raises(AppError, match="is empty"):
+        client.predict(story=None, api_name="/scene")
+
+
 def test_the_endpoint_is_documented(client: Client) -> None:
     endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/generate"]
     parameters = {p["parameter_name"]: p for p in endpoint["parameters"]}
