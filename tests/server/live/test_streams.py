@@ -143,8 +143,8 @@ def test_poses_at_any_pace_become_thirty_a_second() -> None:
 
 def test_a_stream_answers_each_frame_once() -> None:
     one = stream()
-    first = answered(one, read_message(poses([0.0, 1 / 30], 0.5)))
-    second = answered(one, read_message(poses([2 / 30, 0.1], 0.5)))
+    first = answered(one, poses([0.0, 1 / 30], 0.5))
+    second = answered(one, poses([2 / 30, 0.1], 0.5))
     assert (first["start"], second["start"]) == (0, 2)
     both = np.concatenate([unpack_positions(a["frames"]) for a in (first, second)], axis=1)
     assert both.shape == (2, 4, 22, 3)
@@ -152,7 +152,7 @@ def test_a_stream_answers_each_frame_once() -> None:
     assert both[1] == pytest.approx(both[0] * [-1, 1, -1] + [0, 0, 1.5], abs=2e-3)
     assert first["belief"]["text"] == "The stub watches."
     assert first["belief"]["chances"] == [["wave", 0.75], ["bow", 0.2]]
-    assert answered(one, read_message(b"{}"))["frames"] is None
+    assert answered(one, b"{}")["frames"] is None
     assert one.frames == 4
 
 
@@ -170,7 +170,7 @@ def test_landmarks_become_the_persons_poses() -> None:
             image=filmed.image[[picture]],
             seen=filmed.seen[[picture]],
         )
-        answers.append(answered(one, read_message(packed(chosen).encode())))
+        answers.append(answered(one, packed(chosen).encode()))
     frames = [unpack_positions(a["frames"]) for a in answers if a["frames"]]
     person = np.concatenate(frames, axis=1)[0]
     assert len(person) == pytest.approx(30 * 1.5 - 2 * 8, abs=3)
@@ -185,7 +185,7 @@ def test_landmarks_become_the_persons_poses() -> None:
         image=filmed.image[:0],
         seen=filmed.seen[:0],
     )
-    assert "step into the picture" in answered(one, read_message(packed(empty).encode()))["hint"]
+    assert "step into the picture" in answered(one, packed(empty).encode())["hint"]
 
 
 def test_a_stream_that_ends_stops_in_the_middle_of_a_message() -> None:
@@ -242,7 +242,7 @@ def test_what_no_page_sends_is_refused_in_a_sentence(body: bytes) -> None:
 
 def test_a_message_that_spans_half_a_minute_is_not_computed_whole() -> None:
     one = stream()
-    answer = answered(one, read_message(poses([float(second) for second in range(32)])))
+    answer = answered(one, poses([float(second) for second in range(32)]))
     assert MOST_FRAMES <= one.frames < MOST_FRAMES + 30
     assert answer["start"] == 0
 
@@ -250,10 +250,10 @@ def test_a_message_that_spans_half_a_minute_is_not_computed_whole() -> None:
 def test_a_stream_gets_no_more_frames_than_time_has_passed() -> None:
     one = stream()
     for minute in range(3):
-        answered(one, read_message(poses([60 * minute + 0.9 * i for i in range(32)])))
+        answered(one, poses([60 * minute + 0.9 * i for i in range(32)]))
     assert one.frames == stream_module.AHEAD
     one.clock.now += 1.0
-    answered(one, read_message(poses([600 + 0.9 * i for i in range(32)])))
+    answered(one, poses([600 + 0.9 * i for i in range(32)]))
     assert one.frames == stream_module.AHEAD + 30
 
 
@@ -263,7 +263,7 @@ def test_points_that_lie_in_one_place_do_no_harm() -> None:
         replace(filmed, image=np.full_like(filmed.image, 0.5), world=np.zeros_like(filmed.world)),
         replace(filmed, seen=np.zeros_like(filmed.seen), image=np.zeros_like(filmed.image)),
     ):
-        answer = answered(stream(), read_message(packed(part).encode()))
+        answer = answered(stream(), packed(part).encode())
         assert answer["frames"] is None or np.isfinite(unpack_positions(answer["frames"])).all()
 
 
@@ -276,7 +276,7 @@ def test_things_are_sent_whole_with_the_first_frames_and_then_only_as_they_move(
     for index, leaf in enumerate(sash):
         one.partner.things = (still, leaf)  # type: ignore[misc]
         one.clock.now += 0.1  # type: ignore[attr-defined]
-        answers.append(answered(one, read_message(poses([0.1 * index]))))
+        answers.append(answered(one, poses([0.1 * index])))
     assert [thing["kind"] for thing in answers[0]["things"]] == ["hi-fi", "sash"]
     assert "moved" not in answers[0] and not {"things", "moved"} & answers[1].keys()
     ((number, *pose),) = answers[2]["moved"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, Self
 
@@ -228,14 +228,6 @@ class ReactRequest(SamplingRequest):
         if self.first_pose is not None:
             plain["first_pose"] = np.asarray(self.first_pose).tolist()
         return {"kind": "react", "actor": motion_facts(self.actor), **plain}
-
-
-def replayed(request: Mapping[str, Any], manifest: Mapping[str, Any]) -> dict[str, Any]:
-    """The fields of a kept request that make its result at once: the seed of the try that was kept, and one try."""
-    tries = manifest.get("tries")
-    if not isinstance(tries, Mapping) or "seed" not in tries:
-        return dict(request)
-    return {**request, "seed": tries["seed"], "tries": 1}
 
 
 # ---- limits: the numbers, and the checks that say in a sentence what is wrong and what to do -----------------

@@ -155,12 +155,10 @@ class LeanStates(StateHolder):
                 if _CALL.match(session_id):
                     self._calls.append(session_id)
                     if len(self._calls) > CALLS:
-                        self._drop(self._calls.popleft())
+                        gone = self._calls.popleft()
+                        self.session_data.pop(gone, None)
+                        self.time_last_used.pop(gone, None)
         return super().__getitem__(session_id)
-
-    def _drop(self, session_id: str) -> None:
-        self.session_data.pop(session_id, None)
-        self.time_last_used.pop(session_id, None)
 
 
 def kept_in_cache(page: Blocks) -> set[str]:

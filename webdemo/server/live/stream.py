@@ -100,14 +100,15 @@ class LiveStream:
         """Mean time of computing a frame."""
         return 1000 * self.spent / self.frames if self.frames else 0.0
 
-    def answer(self, content: Landmarks | Poses | None) -> Iterator[dict[str, Any] | None]:
+    def answer(self, body: bytes) -> Iterator[dict[str, Any] | None]:
         """Computes the answer to a message: None after each frame, at last both people's new ones and what is said.
 
         Raises:
             StreamEnded: if the stream has ended, also between two steps.
+            InputError: for a message that cannot be read.
         """
         frames: list[Array] = []
-        spent, made = 0.0, self._frames(content)
+        spent, made = 0.0, self._frames(read_message(body))
         while True:
             if self.ended:
                 raise StreamEnded(self.ended)

@@ -12,7 +12,7 @@ import logging
 import secrets
 import threading
 import time
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
@@ -27,7 +27,7 @@ from webdemo.server.http.routes import Refused
 from webdemo.ui.visitor import Visitor, visitor_of
 from webdemo.view.payload import player_payload
 
-from .stream import LiveStream, StreamEnded, read_fields, read_message
+from .stream import LiveStream, StreamEnded, read_fields
 
 log = logging.getLogger(__name__)
 Answer = TypeVar("Answer")
@@ -155,7 +155,7 @@ class Streams:
         async with stream.one:
             if stream.newest is not mine:
                 raise Refused(409, REPLACED, "live")
-            steps, answer = _steps(stream, body), None
+            steps, answer = stream.answer(body), None
             while answer is None:
                 answer = await self._in_turn(self._computing, partial(next, steps))
             return answer
@@ -199,11 +199,6 @@ class Streams:
         while len(self._ended) > KEPT:
             del self._ended[next(iter(self._ended))]
         log.info("live", extra={"frames": stream.frames, "milliseconds": round(stream.milliseconds, 2)})
-
-
-def _steps(stream: LiveStream, body: bytes) -> Iterator[dict[str, Any] | None]:
-    """Reads a message and computes its answer; see :meth:`LiveStream.answer`."""
-    yield from stream.answer(read_message(body))
 
 
 # ---- the addresses of live streams ---------------------------------------------------------------
