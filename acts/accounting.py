@@ -9,7 +9,7 @@ act than the words name. Words of grammar and of the two people count for nothin
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Mapping, Set
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,7 +17,7 @@ from motion import InputError
 
 from .captions import naming, with_thing
 from .lexicon import Entry, Lexicon, kind_of, lexicon
-from .plan import FROM_BEHIND, ON_TIPTOE, Act, Plan
+from .plan import FROM_BEHIND, ON_TIPTOE, Act, Plan, merged
 from .reading import wordnet
 from .reading.parses import Parse, parses
 from .reading.people import A_NAME, ANYONE, B_NAME
@@ -102,13 +102,13 @@ def _account(plan: Plan, known: Lexicon) -> Account:
             if told or not _counts(token, parsed, names):
                 continue
             by = _read_by(token, start, stop, plan, known, parsed)
-            if by is None and token.dep_ == "xcomp":  # "keeps walking"
+            if by is None and token.dep_ in ("xcomp", "ccomp"):  # "keeps walking", "helps her sit"
                 by = _read_by(token, *spans[token.head.i], plan, known, parsed)
             if by is None:
                 left.append(parsed.text.span(*_phrase(token)))
             elif by:
                 unsaid.setdefault(by, []).append(parsed.text.span(*_phrase(token)))
-    left = [(i, j) for i, j in left if plan.sentence[i:j].strip() not in (A_NAME, B_NAME, "A", "B")]
+    left = [(i, j) for i, j in left if plan.sentence[i:j].strip().upper() not in ("A", "B")]
     named = {
         of: _quoted([(i, j) for i, j in each if not any(i < y and x < j for x, y in left)], plan.sentence)
         for of, each in unsaid.items()
@@ -117,7 +117,7 @@ def _account(plan: Plan, known: Lexicon) -> Account:
 
 
 def _quoted(spans: list[tuple[int, int]], text: str) -> tuple[str, ...]:
-    return tuple(text[i:j] for i, j in _joined(spans, text))[:MOST_WORDS]
+    return tuple(text[i:j] for i, j in merged(spans, text))[:MOST_WORDS]
 
 
 def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> bool:
@@ -161,7 +161,8 @@ def shown_caption(act: Act, entry: Entry) -> str:
     usual, own = naming(act, entry), f"[{act.act.split('-')[0]}]"
     alike = [text for text in entry.caption if own in text and _slots(text) == _slots(usual)]
     alike = [text for text in alike if act.thing or not text.endswith("something")]
-    alike.sort(key=lambda text: text != usual)
+    limbs = {text: {vocabulary().named_part(word) for word in _WORD.findall(text)} & closed("limbs") for text in alike}
+    alike.sort(key=lambda text: (not act.part and bool(limbs[text]), text != usual))  # "drags", and not "by the feet"
     return next((text for text in alike if act.direction in text.split()), next(iter(alike), usual))
 
 
@@ -241,9 +242,9 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return True
     if words.likeness.get(lemma) in act.manner:
         return True
-    if (text in closed("next to") and said_words(entry.caption) & closed("next to")) or (
-        text == "behind" and FROM_BEHIND in act.manner
-    ):
+    if any(text in closed(name) and said_words(entry.caption) & closed(name) for name in ("next to", "past")):
+        return True
+    if text == "behind" and FROM_BEHIND in act.manner:
         return True
     if token.pos_ in ("VERB", "NOUN") and _alike(lemma, _verbs(entry.caption), entry.synsets):
         return True
@@ -317,12 +318,9 @@ def _is_place(token: Token) -> bool:
 
 def _is_target(token: Token) -> bool:
     """True for a preposition before the person to whom something is done: "on each other"."""
-    people = vocabulary().is_person
-    return token.lower_ in closed("targets") and any(
-        (c.dep_ == "pobj" and (c.pos_ == "PRON" or c.text in (A_NAME, B_NAME) or people(c.lemma_.lower())))
-        or (c.lower_ == "other" and c.dep_ == "pobj")
-        for c in token.children
-    )
+    targets = [c for c in token.children if c.dep_ == "pobj"] if token.lower_ in closed("targets") else []
+    named = any(c.text in (A_NAME, B_NAME) or vocabulary().is_person(c.lemma_.lower()) for c in targets)
+    return named or any((c.pos_ == "PRON" and c.lower_ != "it") or c.lower_ == "other" for c in targets)
 
 
 def _phrase(token: Token) -> tuple[int, int]:
@@ -339,17 +337,3 @@ def _phrase(token: Token) -> tuple[int, int]:
         if token.dep_ == "pobj" and 0 < first.i - token.head.i <= 1:
             first = token.head
     return first.idx, token.idx + len(token)
-
-
-def _joined(spans: list[tuple[int, int]], text: str) -> Iterator[tuple[int, int]]:
-    """Spans in order, of which those that overlap or touch are one."""
-    last: tuple[int, int] | None = None
-    for start, stop in sorted(spans):
-        if last is not None and (start <= last[1] or not text[last[1] : start].strip()):
-            last = (last[0], max(last[1], stop))
-            continue
-        if last is not None:
-            yield last
-        last = (start, stop)
-    if last is not None:
-        yield last

@@ -130,8 +130,8 @@ def naming(act: Act, entry: Entry) -> str:
     """The caption of an act that has a place for its thing or speaks of two at once; else its usual one."""
     other = caption_of(act, entry)
     both = len(act.agents) == 2 and "{b}" in other
-    fits = (text for text in entry.caption if (act.thing and "{thing}" in text) or (both and "{a+b}" in text))
-    return next(fits, other)
+    fits = [text for text in entry.caption if act.thing and "{thing}" in text]
+    return next(iter([*fits, *(text for text in entry.caption if both and "{a+b}" in text)]), other)
 
 
 def caption_of(act: Act, entry: Entry) -> str:

@@ -2,7 +2,7 @@
 
 A rule is a condition of :mod:`motion.metrics.sentences` in which these names stand for an act's own values: ``who`` is
 its agent and ``whom`` the other; ``side`` and ``way`` are "any" and ``part`` (of the body) is "body" where the words
-name none; ``n`` is how often, 1 where they do not say, and ``times(…, n)`` asks for no
+name none; ``n`` is how often, 1 where they do not say, ``several`` likewise 2, and ``times(…, n)`` asks for no
 more where they do; ``metres`` is how far apart.
 """
 
@@ -37,7 +37,7 @@ NO_RULE = "nothing measures it"
 
 _OF_THE_CLOCK = {"clockwise": "right", "counterclockwise": "left"}
 """Directions as seen from above, and those that a rule asks for."""
-UNSAID: Mapping[str, str | float] = {"side": "any", "part": "body", "way": "any", "n": 1, "metres": 1.2}
+UNSAID: Mapping[str, str | float] = {"side": "any", "part": "body", "way": "any", "n": 1, "several": 2, "metres": 1.2}
 """What a rule asks for where the words say nothing: ``metres`` is how far apart at least."""
 
 
@@ -247,7 +247,8 @@ def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
     part = f"{act.part_side} {part}" if act.part_side else part
     way = _OF_THE_CLOCK.get(act.direction or "", act.direction)
     way = way if way in ("forward", "back", "left", "right") else "any"
-    said: dict[str, str | float] = {"side": act.side or "any", "part": part, "way": way, "n": act.times or 1}
+    said: dict[str, str | float] = {"side": act.side or "any", "part": part, "way": way}
+    said |= {"n": act.times, "several": act.times} if act.times else {}
     said |= {"metres": 0.7 * act.distance} if act.distance else {}
     return [cast(rule, who, whom, counted=bool(act.times), **said) for rule in entry.rule]
 
@@ -272,7 +273,7 @@ def cast(rule: str, who: str, whom: str, *, counted: bool = False, **said: str |
 
         def visit_Call(self, node: ast.Call) -> ast.expr:
             count = isinstance(node.func, ast.Name) and node.func.id == "times"
-            said = count and any(isinstance(each, ast.Name) and each.id == "n" for each in node.args)
+            said = count and any(isinstance(each, ast.Name) and each.id in ("n", "several") for each in node.args)
             self.generic_visit(node)
             if said and counted:
                 node.func = ast.Name("exactly")

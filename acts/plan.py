@@ -6,7 +6,7 @@ never reads the words again. ``Plan.model_json_schema()`` is the contract.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError, model_validator
@@ -235,6 +235,17 @@ def beats(acts: Sequence[Act]) -> list[list[Act]]:
     for act in acts:
         groups.setdefault(level[act.id], []).append(act)
     return [groups[key] for key in sorted(groups)]
+
+
+def merged(spans: Iterable[tuple[int, int]], text: str) -> list[tuple[int, int]]:
+    """Spans (start, stop) of a text in order, of which those that overlap or touch are one."""
+    joined: list[tuple[int, int]] = []
+    for start, stop in sorted(spans):
+        if joined and (start <= joined[-1][1] or not text[joined[-1][1] : start].strip()):
+            joined[-1] = joined[-1][0], max(joined[-1][1], stop)
+        else:
+            joined.append((start, stop))
+    return joined
 
 
 def _relations(acts: Sequence[Act]) -> Iterator[tuple[str, str, str]]:

@@ -42,7 +42,7 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     caption = shown_caption(act, entry)
     words = said_words((caption,))
     goes = next((shape for shape in entry.stage if isinstance(shape, Go)), None)
-    if act.times is not None and "n" not in names:
+    if act.times is not None and not names & {"n", "several"}:
         yield "how often", ""
     if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
         yield "which side", ""

@@ -8,12 +8,13 @@ from pathlib import Path
 
 from acts.frames import Event, Frame, Match, Ref
 from acts.lexicon import SEATS, Entry, Lexicon, is_fixture, kind_of, lexicon
-from acts.plan import MOST_ACTS, ON_TIPTOE, Act, Plan, Relation, Span, Unread, other_of
+from acts.plan import MOST_ACTS, ON_TIPTOE, Act, Plan, Relation, Span, Unread, merged, other_of
 from acts.shapes import Go
 from motion import InputError
 
 from .matching import Found, completed, formations, held, is_next_to, matcher, noun_acts, of_the_last, repeated, seated
 from .parses import Parse, parses
+from .people import A_NAME, B_NAME
 from .reader import Reader
 from .relations import related
 from .spelling import Speller, other_language, unknown
@@ -248,15 +249,10 @@ class _Planner:
     def _left_over(self) -> None:
         """Adds the words that no dictionary has, and those that no act has taken up, to what was not read."""
         unknown = {first for first, _ in self._nonsense}
-        left = [(t.idx, t.idx + len(t)) for t in self._missed if t.idx + len(t) + 1 not in unknown]
-        joined = [[first, last] for first, last in left[:1]]
-        for first, last in left[1:]:
-            if first <= joined[-1][1] + 1:
-                joined[-1][1] = last
-            else:
-                joined.append([first, last])
+        missed = [t for t in self._missed if t.text not in (A_NAME, B_NAME)]
+        left = [(t.idx, t.idx + len(t)) for t in missed if t.idx + len(t) + 1 not in unknown]
         reasons = [(each, "These words are not known.") for each in self._nonsense]
-        reasons += [((first, last), "These words belong to no act.") for first, last in joined]
+        reasons += [(each, "These words belong to no act.") for each in merged(left, self._prepared.parsed)]
         for (first, last), why in reasons:
             start, stop = self._prepared.span(first, last)
             if stop > start and not any(u.words.start < stop and start < u.words.stop for u in self._unread):
@@ -319,7 +315,9 @@ class _Planner:
         refs = [event.object, part, *by]  # "with the left foot", but not "with a purse on the left arm"
         parts = [ref for ref in refs if ref is not None and ref.kind == "part" and ref.side]
         own = [ref.side for ref in parts if ref.who in ("", match.agents) and not (part_side and ref is part)]
-        side = next(filter(None, (event.side, *own, *(ref.side for ref in parts if ref.side == "both"))), None)
+        by_part = event.object is not None and event.object.kind == "part" and event.object is not part
+        both = () if by_part else (ref.side for ref in parts if ref.side == "both")  # not "an arm around his shoulders"
+        side = next(filter(None, (event.side, *own, *both)), None)
         if own and event.direction in ("left", "right"):
             side = own[0]  # "to the left with the right foot"
         act = Act(
@@ -335,8 +333,8 @@ class _Planner:
             modality=event.modality,  # type: ignore[arg-type]
             already=self._goes_on(event, match.agents, entry) and not entry.moment,
             seconds=event.seconds,
-            side=side if side in ("left", "right", "both") else None,  # type: ignore[arg-type]
-            times=None if event.distance and not name.startswith("step") else event.times,
+            side=side if side in ("left", "right", "both") else None,
+            times=None if event.distance and (toes or not name.startswith("step")) else event.times,
             manner=(*([ON_TIPTOE] if goes and toes else ()), *event.adverbs[:7]),
             speed=min(max(speed, 0.2), 3.0),
             direction=None if answers else event.direction,
@@ -371,11 +369,13 @@ class _Planner:
         ref = event.object
         if self._known.entries[name].thing == "sits":
             places = [place.lemma for _, place in event.prepositions if place.kind == "thing"]
+            places += [act.thing for act in self._acts[-1:] if act.thing]  # "walks to the bench and sits down"
             return next((noun for noun in places if kind_of(noun) in SEATS), None)
         if ref is not None and ref.kind == "thing" and self._known.entries[name].thing and kind_of(ref.lemma):
             return ref.lemma
         goals = (ref for word, ref in event.prepositions if word in closed("before goals") and ref.kind == "thing")
-        return next((ref.lemma for ref in goals if is_fixture(ref.lemma)), None)
+        goes = any(isinstance(shape, Go) for shape in self._known.entries[name].stage)
+        return next((ref.lemma for ref in goals if is_fixture(ref.lemma) or (goes and kind_of(ref.lemma))), None)
 
     def _goes_on(self, event: Event, agents: str, entry: Entry) -> bool:
         """True for what somebody is doing when the text first speaks of them, or how they sit while they do that."""

@@ -136,8 +136,9 @@ class _Preparation:
         word, owner = "", "'s" * following.endswith("'s")
         letter = following.removesuffix("'s")
         if (
-            lower in closed("lettered")
+            (lower in closed("lettered") or self._is_numbered(i))
             and letter in _NUMBERED
+            and self._lower(i + 2) != "times"
             and (owner or _ends_name(self._tokens, i + 2, self._tokens[i + 1][0]))
         ):
             word = (A_NAME if _NUMBERED[letter] else B_NAME) + owner
@@ -153,6 +154,11 @@ class _Preparation:
         ):
             word = lower + following
         return self._as_one(word, i, 2) if word else 0
+
+    def _is_numbered(self, i: int) -> bool:
+        """True for a noun of a person that begins a clause, where a verb follows its number: "boxer two ducks"."""
+        begins = self._lower(i - 1) in ("", ",", ".", ";", "and", "then", "while")
+        return begins and self._words.is_person(self._lower(i)) and self._is_verb(self._lower(i + 2))
 
     def _keeps(self, i: int) -> bool:
         """True for a direction, and for a noun: "turn right past her", "the way up"."""
@@ -180,7 +186,8 @@ class _Preparation:
         sided = self._lower(i) in ("left", "right") and self._words.named_part(self._lower(i + 1))
         begun = self._pieces[-1:] and self._pieces[-1][1:] == (start, start)  # a verb was supplied
         within = closed("determiners") | {"left", "right", "and", "or", "with"}
-        if sided and (begun or self._lower(i - 1) not in within):
+        owned = self._lower(i - 2).endswith("'s")  # "under her partner's raised left arm"
+        if sided and (begun or (self._lower(i - 1) not in within and not owned)):
             return [("the", start, start)]  # "drags left leg", where nobody leaves
         bare = i not in self._letters and word.islower() and not word.endswith("s") and word not in ("one", "person")
         if not bare or not _begins(self._lower(i - 1)) or not self._is_bare_person(i) or self._lower(i + 1) == "'":
@@ -380,6 +387,13 @@ def names(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
         is_verb: says whether a word is a form of a verb.
     """
     letters = {}
+    if not {"b", "b's"}.isdisjoint(words) and {"A", "B"}.isdisjoint(words):  # "a sneaks up on b"
+        ends = [not word.isalpha() or word in ("and", "then") for word in (*words[1:], ".")]
+        named = (
+            w in ("b", "b's", "a's") or (w == "a" and (ends[i] or _verb_follows(words, i, is_verb)))
+            for i, w in enumerate(words)
+        )
+        words = [word.capitalize() if name else word for word, name in zip(words, list(named), strict=True)]
     upper_b = any(word in ("B", "B's") for word in words)
     for i, word in enumerate(words):
         if word in ("A's", "B's"):

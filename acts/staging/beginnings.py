@@ -14,17 +14,16 @@ from acts import shapes
 from acts.lexicon import Lexicon
 from acts.plan import Act, other_of
 from motion import FPS, SMPL22
-from motion.transforms import Placement
 from motion.vectors import Array
 
 from .floor import ABREAST, BEHIND, CLOSE, LINKED
 from .holds import TWIRL
 from .lifts import takes_hold
-from .places import Standing, eased
+from .places import Standing, Way2D, eased
 from .poses import JOINT, Pose, grounded, seated, upright
-from .score import Lift, Move, Score, goes
+from .score import Lift, Move, Score, at_start, goes
 from .strikes import BOUTS
-from .window import Part, Window, known_paths
+from .window import Part, Stretch
 
 BACKS = 0.34
 """Metres between the pelvises of two people who stand or sit back to back: the backs touch."""
@@ -47,10 +46,12 @@ def beginning(scores: Sequence[Score], lengths: Sequence[float]) -> Standing:
     free = not (first.lift or first.twirls or first.strike) and going(first.moves)
     if not free and (places := placed(first)) is not None:
         return places
-    if any(gesture.gesture == "offers" for gesture in first.gestures.values()) and not goes(first.moves):
+    offers = [who for who, gesture in first.gestures.items() if gesture.gesture == "offers"]
+    if offers and not goes(first.moves) and (not first.reaching or first.reaching.keys() & offers):
         return starting((), lengths[0])
     opening = [listed[0] for listed in first.changes.values()]
-    near = bool(first.reaching) or any(c.already and c.posture == "lies" and not c.passing for c in opening)
+    low = any(at_start(scores, i)[who] != "stands" for i, score in enumerate(scores) for who in score.reaching)
+    near = low or bool(first.reaching) or any(c.already and c.posture == "lies" and not c.passing for c in opening)
     if touch is not None and touch.behind and not goes(first.moves):
         return starting((Move(other_of(touch.person), "averted"),), lengths[0], near=True)
     for score, seconds in zip(scores, lengths, strict=True):
@@ -98,7 +99,7 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     if "ahead" in ways:
         gap = max(gap, min(CLOSE + ways["ahead"].metres, 5.0))
     averted = ("averted",) if "around" in ways else ("averted", "face")
-    turned = next((m.person for m in moves if m.way in averted), "")
+    turned = next((m.person for m in moves if m.way in averted and not m.sits), "")
     turned = turned or next((other_of(m.person) for m in moves if m.way == "behind"), "")
     ahead = -1.0 if turned == "a" else 1.0
     facing_b = 0.0 if turned else math.pi
@@ -181,20 +182,18 @@ class Room:
     delay: int = 0
     before: Standing = field(default_factory=lambda: Standing(np.zeros((2, 2)), np.zeros(2)))
 
-    def steps(self, start: int, window: Window, placement: Placement) -> list[Part]:
+    def steps(self, stretch: Stretch) -> list[Part]:
         """The places of people who step apart, as the network is given them."""
+        parts: list[Part] = []
         at = np.arange(_OFTEN, self.delay + 1, _OFTEN)
-        inside = (at + start >= window.start) & (at + start < window.stop)
-        if not inside.any():
-            return []
+        if not len(at):
+            return parts
         done = eased(np.arange(1, self.delay + 1) / self.delay, 0.4)[at - 1][:, None]
-        frames, parts = (at + start - window.start + window.past)[inside], []
         for person in (0, 1):
             first, last = self.before.places[person], self.stand.places[person]
             if np.linalg.norm(last - first) > _STEP / 2:
-                places = (first + done * (last - first))[inside]
-                headings = np.full(len(frames), float(self.stand.headings[person]))
-                parts += known_paths(person, frames, places, headings, placement)
+                headings = np.full(len(at), float(self.stand.headings[person]))
+                parts += stretch.known_way(Way2D(person, at.tolist(), first + done * (last - first), headings))
         return parts
 
 
@@ -266,6 +265,8 @@ APART = (0.9, 1.25)
 OPEN = 0.3
 """Radians by which somebody who begins may be turned away from the other, to either side."""
 _SIDED = (shapes.Gesture, shapes.Limb, shapes.Touch, shapes.Strike)
+_SIDES = ("side", "sides", "hands")
+"""Names of their fields for it, which may say "both"."""
 _REACHING = frozenset(("hold", "spar", "along", "after", "past", "back to back", "averted", "behind", "thing"))
 """Ways whose places depend on each other."""
 
@@ -306,7 +307,10 @@ class Take:
             return act
         stage, update = known.entries[act.act].stage, dict[str, object]()
         left = all(self.left["ab".index(who)] and who not in sided for who in act.agents)
-        if left and act.direction is None and any(isinstance(shape, _SIDED) for shape in stage):
+        one_handed = any(
+            isinstance(s, _SIDED) and "both" not in (getattr(s, name, "") for name in _SIDES) for s in stage
+        )
+        if left and act.direction is None and one_handed:
             update["side"] = "left"
         around = any(isinstance(shape, shapes.Go | shapes.Turn) and shape.way == "around" for shape in stage)
         if act.direction is None and act.side is None and self.clockwise and around:

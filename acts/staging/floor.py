@@ -46,6 +46,8 @@ PACED = 1.1
 """Metres to either side that somebody walks to and fro."""
 WIDE = 0.9
 """Radius in metres of a walk around the other, at least."""
+SEAT = 0.4
+"""Metres from where somebody stands back to the middle of the seat on which they sit down."""
 FARTHEST = 5.0
 """Metres apart to which people walk; the training scenes hold next to nothing beyond."""
 _CHASED = 7.0
@@ -58,8 +60,10 @@ _WEIGHT = {"stay": 0.4, "averted": 0.6, "turn": 0.5, "face": 0.4, "back": 0.7, "
 """Shares of a beat's time that moves take beside a walk."""
 
 
-def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool = False) -> list[Way2D]:
-    """The ways of both people through a beat of so many frames, from where they stand.
+def plan(
+    moves: Sequence[Move], standing: Standing, frames: int, *, first: bool = False, seats: Sequence[Array] = ()
+) -> list[Way2D]:
+    """The ways of both people through a beat of so many frames, from where they stand, round seats at places (2,).
 
     A person without moves has no way. In a ``first`` beat the ways also say where the two begin.
     """
@@ -69,6 +73,7 @@ def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool 
             float(standing.headings[i]),
             np.full((frames, 2), np.nan),
             np.full(frames, np.nan),
+            seats=list(seats),
         )
         for i in range(2)
     ]
@@ -177,6 +182,8 @@ def _to(move: Move, track: Track, gap: float, to: Array, seconds: float, *, both
     way = (gap - near) / (2 if both else 1)
     if way > (0.05 if move.near else 0.25):
         line = np.stack([track.place, track.place + way * to])
+        if move.sits:
+            track.seats = [*track.seats, line[-1] - SEAT * to]
         track.walk(line, _time(way, move.speed, seconds))
     if last:
         track.stay(facing=bool(move.near))
@@ -257,7 +264,7 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     start, radius = bearing(out), float(np.linalg.norm(out))
     wanted = 2 * math.pi * move.turns * (1.1 if move.turns >= 1 else 1.5)
     end_radius = max(radius, WIDE / 2 if both else WIDE)
-    speed = max(move.speed, 1.6)  # once around within the usual five seconds
+    speed = max(move.speed, 1.6) if move.speed > 0.9 else move.speed  # once around within the usual five seconds
     wanted = min(wanted, speed * max(seconds - 0.4, 0.5) / max((radius + end_radius) / 2, 0.4))
     angles = start + move.sense * np.linspace(0, wanted, 60)
     radii = radius + (end_radius - radius) * np.clip(np.linspace(0, 5, 60), 0, 1)

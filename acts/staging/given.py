@@ -16,7 +16,7 @@ from motion import FPS
 from motion.transforms import Placement, heading
 from motion.vectors import Array
 
-from .beginnings import Room, Take, beginning, going, roomy, starting
+from .beginnings import Room, Take, beginning, going, roomy
 from .figures import figure_parts, figure_poses
 from .floor import plan
 from .gaits import STEPS, low_gait_parts, step_parts
@@ -29,7 +29,7 @@ from .places import EVENLY, Standing, Way2D
 from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, upright
 from .postures import posture_parts, postures
 from .recordings import Performance, dancing, performance, standing_by, walking
-from .score import Move, Score, Touch, goes
+from .score import Move, Score, Touch, at_start, goes
 from .strikes import strike_parts
 from .touches import touch_parts
 from .window import SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
@@ -81,12 +81,11 @@ def plan_parts(
             network.
     """
     score, start = story.scores[window.beat], story.edges[window.beat]
-    if (taken and score.joined) or (not start and story.placed):
+    later = next((each.moves for each in story.scores[1:] if goes(each.moves)), ())
+    comes = not (window.part or score.reaching) and any(move.way in ("to", "away") for move in later)
+    if (taken and score.joined) or (not start and (story.placed or not (score.is_planned or comes))):
         return []
-    if not start and not score.is_planned:
-        parts = _apart(story, window, placement)
-    else:
-        parts = _Beat(story, window, scene, placement).parts()
+    parts = _Beat(story, window, scene, placement).parts()
     return [part for part in parts if part.person not in taken]
 
 
@@ -153,6 +152,16 @@ class _Beat:
         """The people who are not on their feet when it begins."""
         return [person for person in (0, 1) if self.start and self.scene[person, self.start - 1, 0, 1] <= UPRIGHT]
 
+    def seats(self) -> list[Array]:
+        """The places (2,) of the seats on which people sit when it begins, or sat before."""
+        scores, edges = self.story.scores, self.story.edges
+        return [
+            self.scene[person, max(edges[i] - 1, 0), 0, [0, 2]]
+            for i in range(self.window.beat + 1 if self.start else 0)
+            for person, who in enumerate("ab")
+            if at_start(scores, i)[who] == "sits"
+        ]
+
     def last(self, person: int) -> Array | None:
         """A person's pose (22, 3) before it; None if it is the first."""
         return self.scene[person, self.start - 1] if self.start else None
@@ -171,7 +180,7 @@ class _Beat:
         stand = room.stand
         stretch = self.stretch(stand)
         parts, posed = ([], {}) if lift else self.on_the_spot(moves, replace(stretch, start=start + room.delay))
-        parts += room.steps(start, self.window, self.placement)
+        parts += room.steps(stretch)
         touch, moves = meeting(score.touch, moves, posed, stand)
         if lift is not None and not start and not lift.comes:  # they are held from the first frame
             moves = tuple(m for m in moves if (m.person, m.way) != (lift.carrier, "stay"))
@@ -182,7 +191,9 @@ class _Beat:
         goal = towards_touched(touch, posed, stand, score.pulls)
         there = {part.person for part in parts}
         ways = {
-            way.person: way for way in plan(moves, goal, stretch.frames, first=not start) if way.person not in there
+            way.person: way
+            for way in plan(moves, goal, stretch.frames, first=not start, seats=self.seats())
+            if way.person not in there
         }
         couple: list[Part] = []
         if score.hold == COUPLE and len(ways) == 2:
@@ -380,20 +391,6 @@ def _statue_parts(person: int, stretch: Stretch) -> list[Part]:
         return []
     pose = upright(stretch.halt(person), float(stretch.stand.headings[person]))
     return [stretch.known(person, frames, np.repeat(pose[None], len(frames), axis=0))]
-
-
-def _apart(story: Story, window: Window, placement: Placement) -> list[Part]:
-    """The places where two people begin who only come or go in a later beat; free if they touch before."""
-    for score, seconds in list(zip(story.scores, story.seconds, strict=True))[1:]:
-        if goes(score.moves):
-            comes = any(move.way in ("to", "away") for move in score.moves)
-            if not comes or window.part or story.scores[0].reaching:
-                return []
-            stand = starting(score.moves, seconds)
-            stretch = Stretch(window, placement, stand, 0, window.stop)
-            ways = [Way2D(i, [0], stand.places[i : i + 1], stand.headings[i : i + 1]) for i in (0, 1)]
-            return [part for way in ways for part in stretch.known_way(way)]
-    return []
 
 
 def _stand(poses: Array) -> Standing:

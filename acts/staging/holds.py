@@ -13,8 +13,8 @@ import numpy as np
 
 from motion.vectors import Array
 
-from .poses import JOINT, TRUNK, UPRIGHT, Pose, bending, upright
-from .window import KnownFrames, Stretch
+from .poses import JOINT, TRUNK, UPRIGHT, Pose, bending
+from .window import Frames, KnownFrames, Stretch
 
 
 @dataclass(frozen=True)
@@ -126,29 +126,29 @@ def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:
     if not len(at):
         return []
     wrists = joined(hold, np.stack([course.places[at] for course in courses]))
-    parts = []
-    for person, course in enumerate(courses):
-        poses = np.stack([bending(course.places[t], float(course.headings[t]), HOLDS[hold].lean) for t in at])
-        poses[:, _WRISTS] = np.moveaxis(wrists[person], 0, 1)
-        poses -= poses[:, :1].copy()
-        parts.append(stretch.known(person, at, poses, [*TRUNK, *_WRISTS]))
-    return parts
+    return _with_hands(stretch, at, HOLDS[hold].lean, wrists, _WRISTS, [*TRUNK, *_WRISTS])
 
 
 def twirl_parts(stretch: Stretch) -> list[KnownFrames]:
     """The bodies and joined right hands of two people, one of whom turns under them."""
-    courses = [stretch.course(person) for person in (0, 1)]
     at = stretch.shown(np.arange(_REACHES, stretch.frames - _REACHES, 3))
     if not len(at):
         return []
-    hands = raised(np.stack([course.places[at] for course in courses]))
-    wrist = JOINT["right_wrist"]
+    hands = raised(np.stack([stretch.course(person).places[at] for person in (0, 1)]))
+    wrist = [JOINT["right_wrist"]]
+    return _with_hands(stretch, at, 0.0, np.stack([hands[None]] * 2), wrist, [*_HIPS, *TRUNK, *wrist])
+
+
+def _with_hands(
+    stretch: Stretch, at: Frames, lean: float, places: Array, wrists: Sequence[int], joints: Sequence[int]
+) -> list[KnownFrames]:
+    """Joints of two people who stand or lean, with wrists at places (2, W, N, 3)."""
     parts = []
-    for person, course in enumerate(courses):
-        poses = np.stack([upright(course.places[t], float(course.headings[t])) for t in at])
-        poses[:, wrist] = hands
-        poses -= poses[:, :1].copy()
-        parts.append(stretch.known(person, at, poses, [*_HIPS, *TRUNK, wrist]))
+    for person in (0, 1):
+        course = stretch.course(person)
+        poses = np.stack([bending(course.places[t], float(course.headings[t]), lean) for t in at])
+        poses[:, wrists] = np.moveaxis(places[person], 0, 1)
+        parts.append(stretch.known(person, at, poses - poses[:, :1], joints))
     return parts
 
 

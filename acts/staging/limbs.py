@@ -18,7 +18,7 @@ from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
 from motion.vectors import Array
 
-from .poses import ALL, HANDS, JOINT, SOLE, STANDS, TOES, TRUNK, Turns, about, all_but, poses_of, turns_of
+from .poses import ALL, BOTH_SIDES, HANDS, JOINT, SOLE, STANDS, TOES, TRUNK, Turns, about, all_but, poses_of, turns_of
 from .recordings import standing_by
 from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
@@ -80,13 +80,17 @@ def _posed(angles: Mapping[str, Array], count: int, angle: float) -> Array:
 
 def _stance(limbs: Sequence[Limb]) -> list[int]:
     """The feet that stay on the floor: 0 for the left one, 1 for the right one."""
-    raised = [side for limb in limbs if limb.does in RAISES for side in _legs(limb)]
+    raised = [_side(limb) for limb in limbs if limb.does in RAISES]
     return [i for i, side in enumerate(("left", "right")) if side not in raised] or [0, 1]
 
 
-def _legs(limb: Limb) -> list[str]:
-    """The legs that are raised; both cannot be at once, so then it is the right one."""
-    return [limb.side if limb.side in ("left", "right") else "right"]
+_SPINE, _HEAD = ("spine1", "spine2", "spine3"), ("neck", "head")
+"""Joints of the trunk and of the head that turn together."""
+
+
+def _side(limb: Limb) -> str:
+    """The leg that is raised; both cannot be at once, so then it is the right one."""
+    return "left" if limb.side == "left" else "right"
 
 
 def _swing(since: Array, held: Array, times: int, period: float = SWING) -> Array:
@@ -103,12 +107,22 @@ def _pulses(since: Array, held: Array, times: int, period: float = 1.0) -> Array
 
 
 def _leg(limb: Limb, hip: Array, knee: Array, out: Array | float = 0.0) -> Turns:
-    turns: Turns = {}
-    for side in _legs(limb):
-        sign = 1.0 if side == "left" else -1.0
-        turns[f"{side}_hip"] = about(2, sign * np.asarray(out) + np.zeros_like(hip)) @ about(0, -hip)
-        turns[f"{side}_knee"] = about(0, knee)
-    return turns
+    side = _side(limb)
+    spread = about(2, (1.0 if side == "left" else -1.0) * np.asarray(out) + np.zeros_like(hip))
+    return {f"{side}_hip": spread @ about(0, -hip), f"{side}_knee": about(0, knee)}
+
+
+def _both_legs(share: Array, hip: float, knee: float, ankle: float) -> Turns:
+    """Both legs bent by a share of some radians."""
+    angles = {"hip": hip, "knee": knee, "ankle": ankle}
+    return {f"{side}_{joint}": about(0, angle * share) for side, _ in BOTH_SIDES for joint, angle in angles.items()}
+
+
+def _bent(limb: Limb, held: Array, joints: str, aside: float, back: float, ahead: float) -> Turns:
+    """Joints that are bent by so many radians: to a side, up and back, or down and ahead."""
+    if limb.direction in ("left", "right", "out"):
+        return dict.fromkeys(joints.split(), about(2, -_aside(limb) * aside * held))
+    return dict.fromkeys(joints.split(), about(0, (back if limb.direction in ("up", "back") else ahead) * held))
 
 
 def _raised_leg(limb: Limb, held: Array, since: Array) -> Turns:
@@ -129,26 +143,14 @@ def _kicked_leg(limb: Limb, held: Array, since: Array) -> Turns:
     return _leg(limb, 1.3 * pulse, 0.5 * pulse * (1 - pulse))
 
 
-def _stamped_foot(limb: Limb, held: Array, since: Array) -> Turns:
-    pulse = _pulses(since, held, limb.times, 0.8)
-    return _leg(limb, 0.7 * pulse, 1.2 * pulse)
-
-
-def _tapped_foot(limb: Limb, held: Array, since: Array) -> Turns:
-    pulse = _pulses(since, held, limb.times, 0.6)
-    return _leg(limb, 0.6 * pulse, 1.0 * pulse)
-
-
-def _both_knees(limb: Limb, held: Array, since: Array) -> Turns:
-    bent = _pulses(since, held, limb.times, 1.6) if limb.times > 1 else held
-    joints = {"hip": -0.9, "knee": 1.45, "ankle": -0.55}
-    return {f"{side}_{name}": about(0, a * bent) for side in ("left", "right") for name, a in joints.items()}
+def _stepped(limb: Limb, pulse: Array, hip: float, knee: float) -> Turns:
+    return _leg(limb, hip * pulse, knee * pulse)
 
 
 def _lunged(limb: Limb, held: Array, since: Array) -> Turns:
     """A long step of the leg that is named, the knees bent, over the other foot, which stays on its toes."""
     down = np.minimum(1.6 * _pulses(since, held, limb.times, LUNGE), 1.0) if limb.times > 1 else held
-    front = _legs(limb)[0]
+    front = _side(limb)
     back = "left" if front == "right" else "right"
     return _leg(limb, 1.1 * down, 1.25 * down) | {
         f"{back}_hip": about(0, 0.4 * down),
@@ -160,9 +162,8 @@ def _lunged(limb: Limb, held: Array, since: Array) -> Turns:
 
 def _reached_down(limb: Limb, held: Array, since: Array) -> Turns:
     down = _pulses(since, held, limb.times or 1, 3.0) ** 0.5
-    legs = {"hip": -1.8, "knee": 2.0, "ankle": -0.45, "shoulder": -2.0}
-    bent = {f"{side}_{name}": about(0, a * down) for side in ("left", "right") for name, a in legs.items()}
-    return bent | {joint: about(0, 0.5 * down) for joint in ("spine1", "spine2", "spine3")}
+    arms = {f"{side}_shoulder": about(0, -2.0 * down) for side, _ in BOTH_SIDES}
+    return _both_legs(down, -1.8, 2.0, -0.45) | arms | dict.fromkeys(_SPINE, about(0, 0.5 * down))
 
 
 def _crossed_legs(limb: Limb, held: Array, since: Array) -> Turns:
@@ -177,23 +178,9 @@ def _aside(limb: Limb) -> float:
     return 1.0 if "left" in (limb.direction, limb.side) and limb.direction != "right" else -1.0
 
 
-def _leaning(limb: Limb, held: Array, since: Array) -> Turns:
-    if limb.direction in ("left", "right", "out"):
-        return {joint: about(2, -_aside(limb) * 0.22 * held) for joint in ("spine1", "spine2")}
-    sign = -0.2 if limb.direction == "back" else 0.28
-    return {joint: about(0, sign * held) for joint in ("spine1", "spine2")}
-
-
-def _dipped(limb: Limb, held: Array, since: Array) -> Turns:
-    """A trunk that goes far back over bent knees, of a person whom another holds."""
-    legs = {"hip": -0.15, "knee": 0.5, "ankle": -0.3}
-    bent = {f"{side}_{name}": about(0, a * held) for side in ("left", "right") for name, a in legs.items()}
-    return bent | {joint: about(0, -0.26 * held) for joint in ("spine1", "spine2", "spine3")}
-
-
 def _twisted(limb: Limb, held: Array, since: Array) -> Turns:
     turned = _aside(limb) * held if limb.direction or limb.side != "both" else _swing(since, held, limb.times, 2.2)
-    return {joint: heading_matrix(0.26 * turned) for joint in ("spine1", "spine2", "spine3")}
+    return dict.fromkeys(_SPINE, heading_matrix(0.26 * turned))
 
 
 def _swaying(limb: Limb, held: Array, since: Array) -> Turns:
@@ -202,58 +189,27 @@ def _swaying(limb: Limb, held: Array, since: Array) -> Turns:
     return hips | {"pelvis": about(2, -0.15 * swing), "spine2": about(2, -0.12 * swing)}
 
 
-def _head(limb: Limb, held: Array, since: Array) -> Turns:
-    if limb.direction in ("left", "right", "out"):
-        return {joint: about(2, -_aside(limb) * 0.3 * held) for joint in ("neck", "head")}
-    sign = -0.7 if limb.direction in ("up", "back") else 0.6
-    return {joint: about(0, sign * held) for joint in ("neck", "head")}
-
-
 def _rolled_head(limb: Limb, held: Array, since: Array) -> Turns:
     round_ = 2 * np.pi * since / 2.4
-    return {
-        joint: about(0, 0.3 * held * np.cos(round_)) @ about(2, 0.3 * held * np.sin(round_))
-        for joint in ("neck", "head")
-    }
+    return dict.fromkeys(_HEAD, about(0, 0.3 * held * np.cos(round_)) @ about(2, 0.3 * held * np.sin(round_)))
 
 
-def _nodding(limb: Limb, held: Array, since: Array) -> Turns:
-    pulse = _pulses(since, held, limb.times, 0.7)
-    return {joint: about(0, 0.28 * pulse) for joint in ("neck", "head")}
-
-
-def _shaken_head(limb: Limb, held: Array, since: Array) -> Turns:
-    """A head that says no."""
-    swing = _swing(since, held, limb.times, 0.7)
-    return {joint: heading_matrix(0.22 * swing) for joint in ("neck", "head")}
-
-
-def _turned_head(limb: Limb, held: Array, since: Array) -> Turns:
-    """A head that turns to the side that is named, or else to one and the other."""
-    named = limb.direction in ("left", "right")
-    turned = _aside(limb) * held if named else _swing(since, held, limb.times, 2.4)
-    return {joint: heading_matrix(0.42 * turned) for joint in ("neck", "head")}
+def _looking(turned: Array) -> Turns:
+    """A head that is turned by radians (N,) to the left."""
+    return dict.fromkeys(_HEAD, heading_matrix(turned))
 
 
 def _shaking(limb: Limb, held: Array, since: Array) -> Turns:
     """A trunk that shakes with laughter or cold."""
     quick = _swing(since, held, limb.times, 0.45)
-    return {joint: about(0, 0.05 * quick + 0.04 * held) for joint in ("spine1", "spine2", "spine3")} | {
-        "neck": about(0, 0.08 * quick)
-    }
-
-
-def _shrugging(limb: Limb, held: Array, since: Array) -> Turns:
-    """Shoulders that go up and down."""
-    pulse = _pulses(since, held, limb.times or 1, 1.4)
-    return {f"{side}_collar": about(2, sign * 0.4 * pulse) for side, sign in (("left", 1.0), ("right", -1.0))}
+    return dict.fromkeys(_SPINE, about(0, 0.05 * quick + 0.04 * held)) | {"neck": about(0, 0.08 * quick)}
 
 
 def _marching(limb: Limb, held: Array, since: Array) -> Turns:
     """One knee after the other."""
     swing = _swing(since, held, limb.times, 1.1)
     turns: Turns = {}
-    for side, sign in (("left", 1.0), ("right", -1.0)):
+    for side, sign in BOTH_SIDES:
         up = np.maximum(sign * swing, 0.0)
         turns |= {f"{side}_hip": about(0, -1.0 * up), f"{side}_knee": about(0, 1.4 * up)}
     return turns
@@ -264,29 +220,37 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "raises knee": lambda limb, held, since: _leg(limb, 1.45 * held, 1.7 * held),
     "swings leg": _swung_leg,
     "kicks": _kicked_leg,
-    "stamps": _stamped_foot,
-    "taps foot": _tapped_foot,
+    "stamps": lambda limb, held, since: _stepped(limb, _pulses(since, held, limb.times, 0.8), 0.7, 1.2),
+    "taps foot": lambda limb, held, since: _stepped(limb, _pulses(since, held, limb.times, 0.6), 0.6, 1.0),
     "stands on one leg": lambda limb, held, since: _leg(limb, 0.7 * held, 1.3 * held),
     "turns legs out": lambda limb, held, since: {
-        f"{side}_hip": heading_matrix(sign * 0.7 * held) for side, sign in (("left", 1.0), ("right", -1.0))
+        f"{side}_hip": heading_matrix(sign * 0.7 * held) for side, sign in BOTH_SIDES
     },
-    "bends knees": _both_knees,
+    "bends knees": lambda limb, held, since: _both_legs(
+        _pulses(since, held, limb.times, 1.6) if limb.times > 1 else held, -0.9, 1.45, -0.55
+    ),
     "lunges": _lunged,
     "stands tall": lambda limb, held, since: {},
     "reaches down": _reached_down,
     "on tiptoe": lambda limb, held, since: {f"{side}_ankle": about(0, 0.6 * held) for side in ("left", "right")},
     "crosses legs": _crossed_legs,
-    "leans": _leaning,
-    "is dipped": _dipped,
+    "leans": lambda limb, held, since: _bent(limb, held, "spine1 spine2", 0.22, -0.2, 0.28),
+    "is dipped": lambda limb, held, since: (
+        _both_legs(held, -0.15, 0.5, -0.3) | dict.fromkeys(_SPINE, about(0, -0.26 * held))
+    ),
     "twists": _twisted,
     "sways": _swaying,
-    "moves head": _head,
+    "moves head": lambda limb, held, since: _bent(limb, held, "neck head", 0.3, -0.7, 0.6),
     "rolls head": _rolled_head,
-    "nods": _nodding,
+    "nods": lambda limb, held, since: dict.fromkeys(_HEAD, about(0, 0.28 * _pulses(since, held, limb.times, 0.7))),
     "shakes": _shaking,
-    "shakes head": _shaken_head,
-    "turns head": _turned_head,
-    "shrugs": _shrugging,
+    "shakes head": lambda limb, held, since: _looking(0.22 * _swing(since, held, limb.times, 0.7)),
+    "turns head": lambda limb, held, since: _looking(
+        0.42 * (_aside(limb) * held if limb.direction in ("left", "right") else _swing(since, held, limb.times, 2.4))
+    ),
+    "shrugs": lambda limb, held, since: {
+        f"{side}_collar": about(2, sign * 0.4 * _pulses(since, held, limb.times or 1, 1.4)) for side, sign in BOTH_SIDES
+    },
     "marches": _marching,
 }
 """The movements: rotations (N, 3, 3) of joints, of how far each is held (N,) and of the seconds since it began (N,)."""

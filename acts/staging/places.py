@@ -104,6 +104,25 @@ def smoothed(line: Array) -> Array:
     return line
 
 
+def clear_of(line: Array, spot: Array) -> Array:
+    """A line (N, 2) that goes round a thing at a spot (2,) where it would lead through it."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    at = np.linspace(0.0, along[-1], max(int(along[-1] / 0.05), 2))
+    dense = np.stack([np.interp(at, along, line[:, axis]) for axis in (0, 1)], axis=1)
+    out = dense - spot
+    far = np.linalg.norm(out, axis=1)
+    near = np.flatnonzero(far < ROUND)
+    if not len(near) or far.min() > min(far[0], far[-1], ROUND) - 0.05:
+        return line
+    first, last = int(near[0]), int(near[-1])
+    start = bearing(out[first])
+    share = np.linspace(0.0, 1.0, 24)
+    ends = far[first] + share * (far[last] - far[first])
+    radii = ends + (ROUND - ends) * np.sin(np.pi * share) ** 0.5
+    arc = spot + radii[:, None] * direction(start + share * wrapped(bearing(out[last]) - start))
+    return np.concatenate([dense[:first], arc, dense[last + 1 :]])
+
+
 def filled(values: Array, known: Array, first: float) -> Array:
     """The values with the last known one where they are not known."""
     at = np.maximum.accumulate(np.where(known, np.arange(len(values)), -1))
@@ -121,6 +140,8 @@ def direction(heading: float | Array) -> Array:
 
 
 # ---- tracks: the way of one person over the floor of a beat, laid out move by move --------------------
+ROUND = 0.6
+"""Metres from the middle of a seat at which people go round it."""
 HALT = 0.3
 """Seconds of its speed that a walk takes to stop."""
 MOST = 2.6
@@ -149,6 +170,7 @@ class Track:
         frame: the first frame that is not laid out yet.
         going: (2,) unit direction of a walk side by side that they are on; zero if there was none.
         dense: frames of walks whose places are given.
+        seats: places (2,) of seats, round which walks lead.
     """
 
     place: Array
@@ -158,9 +180,12 @@ class Track:
     frame: int = 0
     going: Array = field(default_factory=lambda: np.zeros(2))
     dense: set[int] = field(default_factory=set)
+    seats: Sequence[Array] = ()
 
     def walk(self, line: Array, seconds: float, *, heading: float | None = None) -> None:
         """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says."""
+        for seat in self.seats:
+            line = clear_of(line, seat)
         frames = max(1, min(round(seconds * FPS), len(self.places) - self.frame))
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -169,29 +194,18 @@ class Track:
         share = min(EASE / max(seconds, 1e-6), 0.5)
         far = min(along[-1], MOST * frames / FPS * min(1.5 * (1 - share), 1.0))
         at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
-        stop = self.frame + frames
-        self.places[self.frame : stop] = at
-        self.dense.update(range(self.frame + EVENLY, stop, EVENLY))
-        if heading is None:
-            ahead = np.diff(np.concatenate([self.place[None], at]), axis=0)
-            facing = np.arctan2(ahead[:, 0], ahead[:, 1])
-            still = np.linalg.norm(ahead, axis=1) < 1e-4
-            facing[still] = filled(facing, ~still, self.heading)[still]
-            facing = self._turned_into(np.unwrap(facing))
-        else:
-            facing = np.full(frames, self.heading + wrapped(heading - self.heading))
-        self.headings[self.frame : stop] = facing
-        self.place, self.heading, self.frame = at[-1], float(facing[-1]), stop
+        self.follow(at, heading, still=1e-4)
 
-    def follow(self, places: Array) -> None:
-        """Goes through places (N, 2), one a frame, and faces where it goes."""
+    def follow(self, places: Array, heading: float | None = None, *, still: float = 2e-3) -> None:
+        """Goes through places (N, 2), one a frame, and faces a heading or where it goes, by more than ``still``."""
         stop = self.frame + len(places)
         steps = np.diff(np.concatenate([self.place[None], places]), axis=0)
-        facing, moving = np.arctan2(steps[:, 0], steps[:, 1]), np.linalg.norm(steps, axis=1) > 2e-3
-        facing = filled(facing, moving, self.heading)
+        facing = filled(np.arctan2(steps[:, 0], steps[:, 1]), np.linalg.norm(steps, axis=1) > still, self.heading)
+        if heading is not None:
+            facing = np.full(len(places), self.heading + wrapped(heading - self.heading))
         self.places[self.frame : stop] = places
         self.dense.update(range(self.frame + EVENLY, stop, EVENLY))
-        self.headings[self.frame : stop] = self._turned_into(np.unwrap(facing))
+        self.headings[self.frame : stop] = self._turned_into(np.unwrap(facing)) if heading is None else facing
         self.place, self.heading, self.frame = places[-1], float(self.headings[stop - 1]), stop
 
     def at(self, frame: int, start: Array) -> Array:

@@ -40,6 +40,8 @@ Way = Literal[
 """Ways over the floor, and of staying: those of :class:`acts.shapes.Go`, and a walk up ``beside`` the other; a ``turn``
 on the spot and one to ``face`` the other; somebody who stays, with their back ``averted``, or ``back to back``; two who
 go round each other in ``hold`` or ``spar``; and a way to a ``thing``."""
+_TO_SEATS = ("to", "away", "ahead", "thing", "along")
+"""Ways at whose end people may sit down."""
 IN_PLACE = ("stay", "face", "back to back")
 """Ways that need no legs."""
 LOW = frozenset(("leg", "foot"))
@@ -65,6 +67,7 @@ class Move:
         backwards: they go away with their face to the other.
         gait: as in :class:`acts.shapes.Go`.
         rightwards: to their right; of turns and of ways around, clockwise as seen from above.
+        sits: they sit down where it ends.
     """
 
     person: str
@@ -79,6 +82,7 @@ class Move:
     backwards: bool = False
     gait: str = ""
     rightwards: bool = False
+    sits: bool = False
 
     @property
     def sense(self) -> float:
@@ -249,10 +253,17 @@ def as_story(scores: Sequence[Score]) -> tuple[Score, ...]:
             continue
         if turned and not score.changes and not goes(score.moves):
             scores[i] = replace(score, touch=touch.model_copy(update={"behind": True}))
-    for i, score in enumerate(scores):  # a person who is down does not stand by
-        down = {who for who, posture in at_start(scores, i).items() if posture != "stands"}
-        if score.idle & down:
-            scores[i] = replace(scores[i], idle=score.idle - down)
+    for i, (score, then) in enumerate(pairwise(scores)):  # to sit down at the end of a way, they turn round there
+        sits = [who for who, listed in then.changes.items() if listed[0].posture == "sits" and not listed[0].already]
+        there = [move for move in score.moves if move.person in sits and move.way in _TO_SEATS]
+        turns = (Move(move.person, "turn" if move.way == "along" else "face", sits=True) for move in there)
+        moves = (replace(move, sits=move in there) for move in score.moves)
+        scores[i] = replace(scores[i], moves=(*moves, *turns)) if there else scores[i]
+    for i, score in enumerate(scores):  # a person who is down does not stand by, nor get up for a bow
+        postures = at_start([*scores[:i], replace(score, figures={}), *scores[i + 1 :]], i)
+        down = {who for who, posture in postures.items() if posture != "stands"}
+        kept = {who: each for who, each in score.figures.items() if each.figure != "bows" or who not in down}
+        scores[i] = replace(score, idle=score.idle - down, figures=kept)
     return tuple(scores)
 
 

@@ -295,7 +295,7 @@ class _Stage:
             late=way != "after" and self._late(act),
             metres=act.distance if act.distance is not None and way in ("ahead", "back") else shape.metres,
             near=shape.near,
-            backwards=shape.backwards,
+            backwards=shape.backwards or (way == "away" and act.direction == "back"),
             gait=shape.gait or (ON_TIPTOE if ON_TIPTOE in act.manner else ""),
             rightwards=act.direction in _RIGHTWARDS,
         )
@@ -384,6 +384,7 @@ class _Stage:
         """The moves of people who are free to go; others stay, unless a posture, jump or figure has their legs."""
         low = {*self.changes, *self.jumps, *self.figures}
         moves = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
+        moves = [move for move in moves if move.way != "face" or move.person not in self.changes]  # "sit face to face"
         if {move.person for move in moves if move.way == "to"} == {"a", "b"}:  # they meet for what they do then
             moves = [replace(m, near=m.near or self._reaching().get(m.person, 0.0)) for m in moves]
         going = {move.person for move in moves} | low

@@ -242,7 +242,7 @@ def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> K
         arms = arms_beside(touch, there, own.places[-1], float(own.headings[-1]))
         touch = touch.model_copy(update={"hands": arms[0] if touch.sides else "none"})
     down = kneels(touch, posed.get(1 - giver, upright(np.zeros(2), 0.0)))
-    first = _turned(own) if touch.beside else 0
+    first = _since(np.abs(own.headings - own.headings[-1]) > 0.2) if touch.beside else 0
     first = max(first, _arrival(own), _arrival(other) if 1 - giver in stretch.ways else 0)
     first += KNEELS if down else REACHES
     first = max(first, round(0.6 * frames)) if touch.late else first
@@ -312,13 +312,11 @@ def _rests(touch: Touch, at: Sequence[tuple[int, float]], frames: int) -> range:
 
 def _arrival(course: Course) -> int:
     """The frame from which somebody stays within 4 cm of where they end up."""
-    away = np.linalg.norm(course.places - course.places[-1], axis=1) > 0.04
-    return int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
+    return _since(np.linalg.norm(course.places - course.places[-1], axis=1) > 0.04)
 
 
-def _turned(course: Course) -> int:
-    """The frame from which somebody faces where they will face in the end."""
-    away = np.abs(course.headings - course.headings[-1]) > 0.2
+def _since(away: Array) -> int:
+    """The first frame from which something is no longer so."""
     return int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
 
 

@@ -128,9 +128,11 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
     side = act.side if act.side in ("left", "right") else ""
     place = _place(words)
     if does == "sits":
+        if act.patient and all(shape.who == "patient" for shape in lexicon().entries[act.act].stage):
+            agents = ("ab".index(act.patient),)  # whom the agent seats
         if on_floor(words) and not place:
             return None
-        seats = [noun for noun in nouns_in(words) if noun[1] in SEATS]
+        seats = [noun for noun in nouns_in(f"{words} {act.thing or ''}") if noun[1] in SEATS]
         name, kind = seats[0] if seats else ("chair", "")
         return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
     name, kind = thing_of(act, words)

@@ -182,6 +182,8 @@ def test_who_follows_begins_before_the_other_has_gone() -> None:
 def test_an_answer_may_come_at_once_and_who_kneels_may_stay_on_their_knees() -> None:
     falls = duet(gap=1.0)
     falls.positions[1, 40:, :, 1] *= 0.15
+    assert verdicts("A pushes B over, and B falls down.", falls) == [False, True], "nobody touched them"
+    falls.positions[0, 30:39, index("right_wrist")] = falls.positions[1, 30:39, index("spine3")]
     assert verdicts("A pushes B over, and B falls down.", falls) == [True, True]
     assert verdicts("A crouches down, then A crouches down.", sits(slice(40, 120))) == [True, True]
     assert verdicts("A crouches down, then B crouches down.", sits(slice(40, 120), slice(40, 120))) == [True, False]
@@ -301,6 +303,9 @@ def test_another_skeleton_is_refused() -> None:
         ("A turns away from B.", "A turns away"),
         ("A pushes B away.", "A pushes B away"),
         ("They look at each other.", "they face each other"),
+        ("A drags B across the room.", "A drags B"),
+        ("A catches B.", "A catches B"),
+        ("A puts an arm around B's shoulders.", "A puts an arm around B"),
     ],
 )
 def test_a_verdict_names_the_thing_and_the_qualifiers_of_the_words(sentence: str, words: str) -> None:

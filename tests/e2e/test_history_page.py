@@ -99,10 +99,12 @@ def test_a_class_a_reaction_and_a_prediction_open_as_they_were(lab: str, open_pa
     opened("Reaction to", "react-")
     expect(page.locator("#react-method input")).to_have_value("ReGenNet, offline", timeout=SLOW)
     expect(page.locator("#react-steps input[type=number]")).to_have_value("7", timeout=SLOW)
+    expect(page.locator("#react-pace label.selected")).to_have_count(0)  # neither fast nor faithful
     expect(page.locator("#react-end input[type=number]")).to_have_value("2", timeout=SLOW)
     opened("high five", "")
     expect(page.locator("#class input")).to_have_value("high five", timeout=SLOW)
     expect(page.locator("#prompt")).to_be_hidden()
+    expect(page.locator("#pace label.selected")).to_have_text("Faithful", timeout=SLOW)
     opened("After my walk", "predict-")
     sample = "window.__pasdedeux.player.sample"
     page.wait_for_function(f"{sample}?.past_until === 45 && {sample}.frames === 75 && {sample}.ghost !== null")

@@ -13,7 +13,7 @@ from tests.ui.stub_engine import walking
 from webdemo.ui.components.player import ROUNDS
 from webdemo.ui.text.examples import example_clips
 
-from .playing import choose, give_file, unfold
+from .playing import choose, give_file, set_number, unfold
 from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
@@ -119,12 +119,18 @@ def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -
     choose(page, "#predict-method", "InterGen, both together")
     expect(seed).to_be_visible()
     seed.locator("input").fill("7")
+    set_number(page, "#predict-samples", "2")
     page.click("button#predict-generate")
-    expect(page.locator("#predict-status .pd-done")).to_contain_text("3 samples made")
-    page.wait_for_function("window.__pasdedeux.player.data.samples.length === 3")
+    expect(page.locator("#predict-status .pd-done")).to_contain_text("2 samples made")
+    page.wait_for_function("window.__pasdedeux.player.data.samples.length === 2")
     assert page.evaluate(f"{SAMPLE}.past_until") == 30
     choose(page, "#predict-method", "Motion MLP")
     expect(seed).to_be_hidden()
+    page.get_by_role("tab", name="History").click()
+    page.locator(".pdn-card").first.click()
+    page.click("#history-open")
+    expect(seed).to_be_visible()  # as the run was made
+    choose(page, "#predict-method", "Motion MLP")
 
 
 def test_a_result_of_another_tab_goes_on(page: Page) -> None:

@@ -13,7 +13,6 @@ from motion import SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.kinematics import forward_kinematics
 from motion.metrics import compare
 from motion.transforms import heading_matrix
-from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.live import Belief, LiveTake
 from webdemo.inference.requests.predict import PredictRequest, PredictResult, with_people
@@ -61,13 +60,12 @@ def beside(person: Clip, role: str, seed: int) -> Duet:
 def drift(request: PredictRequest) -> PredictResult:
     """Everyone rises after the marker, by a centimetre a frame, or two by another method than the usual.
 
-    A method for two people has three futures, each half as fast again as the one before.
+    Each of several futures rises half as fast again as the one before.
     """
     past, frames = stacked_positions(request.past), round(request.seconds * FPS)
     pace = 0.01 if request.model == PredictRequest.model else 0.02
     rise = pace * np.arange(1, frames + 1)[:, None, None] * np.array([0, 1.0, 0])
-    futures = range(3 if "two people" in method(request.model).takes else 1)
-    whole = [np.concatenate([past, past[:, -1:] + 1.5**i * rise], axis=1) for i in futures]
+    whole = [np.concatenate([past, past[:, -1:] + 1.5**i * rise], axis=1) for i in range(request.samples)]
     known = 0 if request.truth is None else request.truth.num_frames
     return PredictResult(
         duets=tuple(with_people(request.motion, each) for each in whole),

@@ -119,6 +119,7 @@ def add_predict(commands: Any) -> None:
     parser.add_argument("--marker", type=float, help="second at which the past ends; the end by default")
     parser.add_argument("--seconds", type=float, default=PredictRequest.seconds, help="how many seconds to predict")
     parser.add_argument("--seed", type=int, default=PredictRequest.seed, help="of a method that draws its futures")
+    parser.add_argument("--samples", type=int, default=PredictRequest.samples, help="how many futures it draws, 1 to 8")
     parser.add_argument("--model", default=PredictRequest.model, help=names_of("predict"))
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh …")
     parser.set_defaults(job=predict)
@@ -134,6 +135,7 @@ def predict(options: argparse.Namespace) -> dict[str, Any]:
         marker=options.marker,
         seconds=options.seconds,
         seed=options.seed,
+        samples=options.samples,
         model=options.model,
     )
     result = run(request)

@@ -375,7 +375,7 @@ def _unchecked(column: Sequence[Mapping[str, Any]]) -> str:
     words, left = str(row["words"]), list(row.get("unchecked", ()))
     missed = any(each["done"] is False for each in column)
     if row.get("wrote"):
-        return f"“{row['wrote']}”, read as: {words}" * (not missed)
+        return _with_why(f"“{row['wrote']}”, read as: {words}", " and ".join(left)) * (not missed)
     if row["done"] is None:
         why = [] if row["measure"] == NO_RULE else [row["measure"]]
         return _with_why(words, " and ".join(why + left))

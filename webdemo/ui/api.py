@@ -264,6 +264,7 @@ class PredictEndpoint(Endpoint):
             "seconds": gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
             "model": gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
             "seed": gr.Number(0, precision=0, label="seed of a method that draws its futures"),
+            "samples": gr.Number(PredictRequest.samples, precision=0, label="how many futures it draws, 1 to 8"),
             **file_facts(),
         }
 

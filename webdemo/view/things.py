@@ -52,13 +52,9 @@ def shadow_spots(things: Sequence[Thing], frame: float) -> Array:
     places = []
     for thing in things:
         spots = thing.mesh.spots()
-        places.append(np.c_[_moved(thing, spots[:, :3], frame), spots[:, 3]])
+        index = int(np.clip(round(frame), 0, thing.num_frames - 1))
+        places.append(np.c_[spots[:, :3] @ thing.rotations[index].T + thing.places[index], spots[:, 3]])
     return np.concatenate(places) if places else np.zeros((0, 4))
-
-
-def _moved(thing: Thing, points: Array, frame: float) -> Array:
-    index = int(np.clip(round(frame), 0, thing.num_frames - 1))
-    return points @ thing.rotations[index].T + thing.places[index]
 
 
 def thing_payload(thing: Thing) -> dict[str, Any]:

@@ -17,6 +17,7 @@ import numpy as np
 from . import paths, poses, shapes, touches  # noqa: F401 (they fill the vocabulary)
 from .joints import PREDICATES, Mask, Motion, longest, stretches
 from .measures import MEASURES
+from .paths import WALK
 
 SLACK = 0.3
 """Seconds by which the middle of a later beat may come before the end of an earlier one."""
@@ -134,16 +135,21 @@ def measured(rule: str, motion: Motion, *, lacking: bool = False) -> str:
     Raises:
         RuleError: as :func:`check`.
     """
+    least = ""
     for node in _calls(ast.parse(rule, mode="eval").body):
         if lacking and _name(node.func) in ("times", "exactly"):
             mask, count = (_value(argument, motion) for argument in node.args)
             seen = _times(motion, mask)
             if 0 < seen < count or (seen > count and _name(node.func) == "exactly"):
                 return f"done {seen} time{'s' * (seen != 1)}, not {count}"
-        if _name(node.func) in MEASURES and not (lacking and np.any(_value(node, motion))):
-            said, limit = str(_call(node, motion, MEASURES)), _limit(node, motion) if lacking else ""
-            return said + limit * (("°" in said) == ("°" in limit))
-    return ""
+        if _name(node.func) in MEASURES:
+            held = lacking and bool(np.any(_value(node, motion)))
+            said, limit = str(_call(node, motion, MEASURES)), _limit(node, motion) if lacking and not held else ""
+            said += limit * all((unit in said) == (unit in limit) for unit in ("°", "m/s"))
+            if not held:
+                return said
+            least = least or said  # it is so, and not for long enough, or too often
+    return least
 
 
 def _limit(node: ast.Call, motion: Motion) -> str:
@@ -152,9 +158,11 @@ def _limit(node: ast.Call, motion: Motion) -> str:
     named = {str(keyword.arg): _value(keyword.value, motion) for keyword in node.keywords}
     bound = inspect.signature(PREDICATES[_name(node.func)]).bind(motion, *arguments, **named)
     bound.apply_defaults()
-    for name, value in bound.arguments.items():
+    for name, value in reversed(bound.arguments.items()):
         if name in ("gap", "metres", "over", "rise", "drop") and isinstance(value, float) and value > 0:
             return f", {100 * value:.0f} cm needed" if value < 1 else f", {value:.1f} m needed"
+        if name == "speed" and isinstance(value, float) and value > WALK:
+            return f", {value:.1f} m/s needed"
         if name == "degrees" and isinstance(value, (int, float)):
             return f", {value:.0f}° needed"
     return ""

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .joints import Array, Motion, stretches
-from .paths import sideways
+from .paths import WALK, sideways
 from .poses import _lift, _wrist_speed
 from .shapes import lean_to
 from .touches import _hand_gaps, to_joints
@@ -76,7 +76,11 @@ _TABLE: dict[str, Callable[..., str]] = {
     "faces": lambda m, who, *_, **__: f"{_NAMES[who]} faces {m.off(who).min():.0f}° away from {_NAMES[1 - who]}",
     "orbits": lambda m, who, *_, **__: f"{_NAMES[who]} goes {_round(m, who):.0f}° around",
     # ---- ways ----------------------------------------------------------------------------------------
-    "walks goes_ahead goes_metres sidesteps steps_aside passes follows": (
+    "walks": lambda m, who, metres=0.8, speed=WALK: (
+        f"{_NAMES[who]} "
+        + (f"reaches {m.speeds[who].max():.1f} m/s" if speed > WALK else f"goes {_gone(m, m.speeds[who])}")
+    ),
+    "goes_ahead goes_metres sidesteps steps_aside passes follows": (
         lambda m, who, *_, **__: f"{_NAMES[who]} goes {_gone(m, m.speeds[who])}"
     ),
     "goes_way": lambda m, who, way, *_, **__: f"{_NAMES[who]} goes {_gone(m, sideways(m, who, way))} to the {way}",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .joints import Array, Mask, Motion, keep, predicate
@@ -23,9 +25,9 @@ def walks(m: Motion, who: int, metres: float = 0.8, speed: float = WALK) -> Mask
 
 
 @predicate
-def runs(m: Motion, who: int, metres: float = 1.0) -> Mask:
-    """Faster than people walk: 1.7 m/s and more."""
-    return walks(m, who, metres, 1.7)
+def runs(m: Motion, who: int, metres: float = 1.0, speed: float = 1.7) -> Mask:
+    """Faster than people walk."""
+    return walks(m, who, metres, speed)
 
 
 @predicate
@@ -244,22 +246,16 @@ def revolves(m: Motion, who: int, rounds: int = 1, way: str = "any") -> Mask:
 @predicate
 def turns_to(m: Motion, who: int, degrees: float = 60.0) -> Mask:
     """Turns by ``degrees`` or more, from looking elsewhere until they look at the other."""
-    off = m.off(who)
-
-    def done(i: int, j: int) -> bool:
-        last = min(j + round(0.2 * m.fps), m.frames) - 1
-        return off[i] > 60 and off[i] - off[last] > 0.7 * degrees and off[last] < 60
-
-    return keep(turns(m, who, degrees), m.fps, done, pause=0.0)
+    return _turned(m, who, degrees, lambda first, last: first > 60 > last and first - last > 0.7 * degrees)
 
 
 @predicate
 def turns_away(m: Motion, who: int, degrees: float = 60.0) -> Mask:
     """Turns by ``degrees`` or more, from looking at the other until they look elsewhere."""
-    off = m.off(who)
+    return _turned(m, who, degrees, lambda first, last: first < 60 and last > max(90, first + 0.7 * degrees))
 
-    def done(i: int, j: int) -> bool:
-        last = min(j + round(0.2 * m.fps), m.frames) - 1
-        return off[i] < 60 and off[last] - off[i] > 0.7 * degrees and off[last] > 90
 
-    return keep(turns(m, who, degrees), m.fps, done, pause=0.0)
+def _turned(m: Motion, who: int, degrees: float, done: Callable[[float, float], bool]) -> Mask:
+    """Turns by so many degrees, of which those from and to the other's direction say that they are done."""
+    off, late = m.off(who), round(0.2 * m.fps)
+    return keep(turns(m, who, degrees), m.fps, lambda i, j: done(off[i], off[min(j + late, m.frames) - 1]), pause=0.0)

@@ -5,11 +5,13 @@ import math
 import numpy as np
 import pytest
 
+from acts import read
 from acts.staging.beginnings import REACH, starting
-from acts.staging.floor import ABREAST, ACROSS, BEHIND, CLOSE, FARTHEST, LINKED, plan
+from acts.staging.floor import ABREAST, ACROSS, BEHIND, CLOSE, FARTHEST, LINKED, SEAT, plan
 from acts.staging.holds import HOLDS
 from acts.staging.places import EVENLY, EVERY, MOST, Standing, Way2D
 from acts.staging.score import Move
+from acts.staging.stage import scores_of
 from motion import FPS
 
 from .staged_words import hold, moves
@@ -324,3 +326,15 @@ def test_a_person_who_watches_the_other_go_round_them_turns_with_them() -> None:
     facing = np.array([watcher.headings[watcher.frames.index(f)] for f in shared])
     off = np.arctan2(line[:, 0], line[:, 1]) - facing
     assert np.cos(off).min() > math.cos(0.5)
+
+
+@pytest.mark.parametrize("words", ["A walks to the chair and sits down.", "A walks up to B and sits down."])
+def test_who_sits_down_at_the_end_of_a_way_has_the_seat_behind_them_and_faces_the_other(words: str) -> None:
+    found = scores_of(read(words).beats())[0].moves
+    begin = starting(found, 5.0)
+    way, other = plan(found, begin, 150, first=True)
+    assert way.headings is not None
+    line = other.places[-1] - way.places[-1]
+    assert math.cos(way.headings[-1] - math.atan2(*line)) > 0.95
+    seat = way.places[-1] - SEAT * line / np.linalg.norm(line)
+    assert np.linalg.norm(way.places - seat, axis=1).min() > 0.35

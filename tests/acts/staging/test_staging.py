@@ -28,7 +28,7 @@ def score(text: str) -> Score:
 def test_shapes_of_several_acts_make_one_beat() -> None:
     both = score("Person A waves while person B sits down.")
     assert both.gestures["a"].gesture == "waves" and both.changes["b"][0].posture == "sits"
-    assert not both.idle
+    assert not both.idle and not score("They sit facing each other.").going
     assert score("Person A salutes.").idle == {"b"}, "who does nothing beside a gesture stands by"
     assert not score("Person A hugs person B.").idle
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from acts.staging.places import MOST, TURNING, Track
+from acts.staging.places import MOST, ROUND, TURNING, Track
 from motion import FPS
 
 
@@ -37,3 +37,12 @@ def test_a_walk_begins_and_ends_slowly_and_no_walk_is_faster_than_a_run() -> Non
     own = track()
     own.walk(np.array([[0.0, 0.0], [0.0, 40.0]]), 4.0)
     assert own.places[-1, 1] <= 4.0 * MOST
+
+
+def test_a_walk_leads_round_a_seat_also_from_it_and_straight_on_where_none_is_in_the_way() -> None:
+    for seat, least in (([0.05, 1.5], ROUND), ([0.0, 0.4], 0.4), ([1.0, 1.5], 1.0)):
+        own = track()
+        own.seats = [np.array(seat)]
+        own.walk(np.array([[0.0, 0.0], [0.0, 3.0]]), 4.0)
+        assert np.linalg.norm(own.places - seat, axis=1).min() > least - 0.03
+        assert own.place == pytest.approx([0.0, 3.0], abs=0.02)

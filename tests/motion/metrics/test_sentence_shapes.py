@@ -189,6 +189,8 @@ def test_a_count_is_exact() -> None:
 def test_a_lean_is_measured_in_the_way_that_is_asked_for() -> None:
     motion = duet(tilt(30, (0, 1)))
     assert measured("happens(leans(a, 'left'))", motion, lacking=True) == "trunk leans to the left by 0°, 15° needed"
+    assert measured("happens(runs(a, 0.5))", motion, lacking=True) == "A reaches 0.0 m/s, 1.7 m/s needed"
+    assert measured("never(near(9.0))", motion, lacking=True) == f"they stay {motion.distance.min():.1f} m apart"
     assert measured("happens(leans(a, 'forward'))", motion) == "trunk leans forward by 30°"
     assert measured("happens(leans(a, 'any'))", motion) == "trunk leans by 30°"
 

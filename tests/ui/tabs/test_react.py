@@ -91,6 +91,7 @@ def test_a_cancelled_upload_changes_nothing_and_a_cleared_file_leaves_no_actor(t
     assert left["state"] is None
     assert left["player"]["value"] is None
     assert not left["trim"]["visible"]
+    assert left["readouts"] == "" and not left["under"]["visible"], "those of a result that has left the stage"
 
 
 @pytest.mark.parametrize(

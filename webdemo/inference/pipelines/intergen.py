@@ -232,8 +232,6 @@ def compiled_near(network: nn.Module, key: str, precision: Precision) -> bool:
 # the predictor's, which is surer of them (docs/scenes.md, *Futures*): InterGen goes on from there.
 
 
-FUTURES = 3
-"""Futures of a request."""
 _SEEN = 10.0
 """Seconds of the past that are given to the scene; a window sees less of it."""
 _LEAD, _LEAD_SHARE = 15, 0.25
@@ -255,7 +253,7 @@ class TogetherPipeline:
         self.intergen, self.predictor = intergen, predictor
 
     def run(self, request: PredictRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
-        """Progress events, then one :class:`PredictResult` of :data:`FUTURES` futures, without a manifest."""
+        """Progress events, then one :class:`PredictResult` of as many futures as are asked for, without a manifest."""
         past = request.past
         assert isinstance(past, Duet)  # the request sees to it
         frames = round(request.seconds * FPS)
@@ -263,7 +261,7 @@ class TogetherPipeline:
         begun = np.concatenate([past.positions, self.predictor.predict(past.positions, lead)], axis=1)
         seen = Duet.from_positions(begun[:, -round(_SEEN * FPS) :], fps=FPS)
         beats = (Beat("", seconds=max((frames - lead) / FPS, SHORTEST)),)
-        asked = SceneRequest(beats=beats, motion=seen, samples=FUTURES, seed=request.seed)
+        asked = SceneRequest(beats=beats, motion=seen, samples=request.samples, seed=request.seed)
         made: tuple[Duet, ...] = ()
         for event in self.intergen.scenes.run(asked, cancel, timer):
             if isinstance(event, Result):

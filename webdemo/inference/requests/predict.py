@@ -32,7 +32,7 @@ class PredictRequest:
             only compared with it.
         marker: second at which the past ends; the end of the motion by default.
         seconds: length of the prediction.
-        seed: of a method that draws its futures.
+        seed, samples: of a method that draws its futures, and how many it draws; others predict one.
         model: a method that predicts, see :mod:`webdemo.inference.methods`.
     """
 
@@ -40,6 +40,7 @@ class PredictRequest:
     marker: float | None = None
     seconds: float = 2.0
     seed: int = 0
+    samples: int = 3
     model: str = "motion-mlp"
 
     def __post_init__(self) -> None:
@@ -47,6 +48,7 @@ class PredictRequest:
         method = methods.method(self.model, "predict")
         set_(self, "seconds", number("Length", self.seconds, *method.seconds, " seconds"))
         check_settings(self)
+        set_(self, "samples", self.samples if "two people" in method.takes else 1)
         set_(self, "motion", check_motion(self.motion))
         if "two people" in method.takes and not isinstance(self.motion, Duet):
             raise InputError(
@@ -92,6 +94,7 @@ class PredictRequest:
             "marker": self.marker,
             "seconds": self.seconds,
             "seed": self.seed,
+            "samples": self.samples,
             "model": self.model,
         }
 

@@ -14,6 +14,7 @@ import numpy as np
 from motion import FPS, Clip, Duet, InputError
 from webdemo.inference.methods import installed, method
 from webdemo.inference.requests.predict import LONGEST, PAST_SECONDS, PredictRequest, PredictResult
+from webdemo.inference.requests.sampling import SAMPLES
 from webdemo.inference.run import Result
 from webdemo.ui.components.actors import Source, offered_animations
 from webdemo.ui.components.fields import FittedSlider, looked_up, method_list, slider
@@ -119,8 +120,8 @@ class PredictTab(JobTab):
             motion=motion_of(source),
             marker=fields["marker"],
             seconds=fields["seconds"],
-            seed=fields.get("seed", PredictRequest.seed),
-            model=fields["model"],  # older grids have no seed
+            **{name: fields[name] for name in ("seed", "samples") if name in fields},  # older grids have neither
+            model=fields["model"],
         )
 
     def title(self, request: PredictRequest) -> str:
@@ -158,13 +159,14 @@ class PredictTab(JobTab):
             "seconds": self.seconds,
             "model": self.model,
             "seed": self.seed,
+            "samples": self.samples,
         }
         self.wire([self.go.click], record)
         self.past.wire(self.record, self.line, self.go)
         self.model.input(
             None,
             inputs=self.model,
-            outputs=[self.about, self.seed],
+            outputs=self._of_model,
             js=looked_up({name: self._of_method(name) for _, name in predict_choices()}),
             **QUIET,
         )
@@ -179,13 +181,15 @@ class PredictTab(JobTab):
         bounds = method(PredictRequest.model).seconds
         self.seconds = slider("predict.seconds", bounds, PredictRequest.seconds, 0.5, elem_id="predict-seconds")
         self.model = method_list(predict_choices(), PredictRequest.model, "predict-method")
-        about, _ = self._of_method(PredictRequest.model)
-        self.about = gr.HTML(about, elem_id="predict-about")
+        self.about = gr.HTML(method_line(method(PredictRequest.model).summary), elem_id="predict-about")
+        drawn: dict[str, Any] = {"elem_id": "predict-samples", "visible": "hidden"}
+        self.samples = slider("predict.samples", SAMPLES, PredictRequest.samples, **drawn)
         self.seed = seed_field(self.prefix, "predict.seed_info", visible="hidden")
+        self._of_model = [self.about, self.samples, self.seed]
 
     def restored(self) -> Sequence[Any]:
-        """The file and its animation."""
-        return [self.past.file, self.past.animation]
+        """The file, its animation, and the line on the method."""
+        return [self.past.file, self.past.animation, self.about]
 
     # ---- events ----------------------------------------------------------------------------------
 
@@ -208,15 +212,17 @@ class PredictTab(JobTab):
 
     @staticmethod
     def _of_method(model: str) -> list[Any]:
-        """The line on a method, and whether the seed is shown."""
-        summary = method_line(method(model).summary)
-        return [summary, {"__type__": "update", "visible": _draws(model) or "hidden"}]
+        """The line on a method, and whether the number of futures and the seed are shown."""
+        shown = gr.update(visible=_draws(model) or "hidden")
+        return [gr.update(value=method_line(method(model).summary)), shown, shown]
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the motion that was asked about, so that the marker can be moved on it."""
         updates, result, past = super().opened(run), run.result, self.past
         if not isinstance(result, PredictResult):
             return updates
+        for part, update in zip(self._of_model, self._of_method(run.entry.request["model"]), strict=True):
+            updates[part] = updates.get(part, {}) | update
         given = result.given
         named = result.manifest.get("request", {}).get("motion", {}).get("name") or run.entry.title
         source = Source(named, given.people)

@@ -58,7 +58,11 @@ class SourcePanel(ABC):
 
     def gone(self) -> Parts:
         """Updates where there is no source."""
-        return {self.state: None, self.results.player: show(None)}
+        return {self.state: None, self.results.player: show(None), **self._without_result()}
+
+    def _without_result(self) -> Parts:
+        """Updates that take away what is said of a result, and can be done with it, once another motion is shown."""
+        return {self.results.under: gr.update(visible=False), self.results.readouts: ""}
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -158,15 +162,15 @@ class SourcePanel(ABC):
         yield {self.line: status(waiting, tone="busy"), player: busy(waiting), self.go: gr.update(interactive=False)}
         try:
             source = read()
-            updates = {self.state: source, player: show(self.payload(source)), **self.described(source, at_end=at_end)}
-            updates |= {self.results.under: gr.update(visible=False), self.results.readouts: ""}  # of an earlier result
+            updates = {self.state: source, player: show(self.payload(source)), **self._without_result()}
+            updates |= self.described(source, at_end=at_end)
         except Exception as error:
             updates = {player: busy(""), **(self.gone() if fresh else {})}
             updates[self.line] = status(error_line(error), tone="error")
         yield {**updates, self.go: gr.update(interactive=True)}
 
     def forget(self) -> Parts:
-        """The tab without a motion; a result stays in the downloads."""
+        """The tab without a motion; a result of it is in the history."""
         return {**self.gone(), self.line: status()}
 
     def read_again(self, source: Source | None, *chosen: Any) -> Iterator[Parts]:
