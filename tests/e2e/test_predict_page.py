@@ -107,7 +107,7 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
     move_marker(page, 4.0)
     page.click("button#predict-generate")
     page.wait_for_function(f"{SAMPLE}.frames === 180 && {SAMPLE}.ghost === null")
-    expect(page.locator("#predict-readouts")).to_contain_text("The recording ends here")
+    expect(page.locator("#predict-readouts")).to_contain_text("The motion ends here")
 
 
 def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -> None:

@@ -82,7 +82,7 @@ def test_a_file_that_cannot_be_read_leaves_nothing_and_a_result_is_taken(page: P
     expect(page.locator("#react-status .pd-error")).to_contain_text("There is no actor yet")
 
     page.get_by_role("tab", name="Generate").click()
-    page.fill("#prompt textarea", "two people walk")
+    page.fill("#prompt textarea", "two people walk.")
     page.click("button#generate")
     expect(page.locator("#status .pd-done")).to_be_visible()
     page.get_by_role("tab", name="React").click()

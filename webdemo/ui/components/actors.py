@@ -157,11 +157,11 @@ def import_choices(up: str, fps: float | None, order: str = AUTO, animation: int
 def result_source(result: Result, title: str) -> Source:
     """The people of a result's first sample, as they were made or given.
 
-    It is called after the file that the result began with, or else after its title.
+    It is called after the file that the result began with, or else after its title without a full stop.
     """
     asked = result.manifest.get("request", {})
     given = asked.get("motion" if asked.get("kind") == "predict" else "actor") or {}
-    return Source(given.get("name") or title, result.duets[0].people)
+    return Source(given.get("name") or title.rstrip("."), result.duets[0].people)
 
 
 def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:

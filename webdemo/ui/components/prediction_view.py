@@ -83,7 +83,7 @@ def error_lines(*results: PredictResult) -> list[str]:
     lines = []
     for result in results:
         if not result.error:
-            lines.append("The recording ends here, so there is nothing to compare with.")
+            lines.append("The motion ends here, so there is nothing to compare with.")
             continue
         error, fps = np.asarray(result.error), result.duets[0].fps
         line = (
