@@ -361,7 +361,8 @@ def held(event: Event, match: Found, known: Lexicon, find: Find) -> Iterator[tup
     rests = rests or any(shape.do == "posture" for shape in known.entries[match[0]].stage)
     rest = [event.prepositions[i] for i in match[2].rest if not (rests and event.prepositions[i][0] == "on")]
     for preposition, ref in rest:
-        open_ = not ref.who and (preposition == "with" or (_carries(ref) and ref.family != "knee"))
+        bears = _carries(ref) and (ref.family != "knee" or ref.side == "both")
+        open_ = not ref.who and (preposition == "with" or bears)
         if ref.kind != "part" or not (open_ or ref.who == agents) or (preposition == "on" and not _carries(ref)):
             continue
         walks = event.lemma in vocabulary().verbs["goes"] | vocabulary().gaits.keys()

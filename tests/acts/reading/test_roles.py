@@ -27,6 +27,7 @@ def last(text: str) -> Act:
         ("Boxer one jabs twice, boxer two ducks.", {"act": "duck", "agents": ("b",)}),
         ("a sneaks up on b and b turns to a", {"agents": ("b",), "patient": "a"}),
         ("A twirls under B's raised left arm.", {"act": "be-twirled", "patient": "b"}),
+        ("A begs on both knees.", {"act": "kneel", "agents": ("a",)}),
         ("She hits the man two times.", {"patient": "b", "times": 2}),
         ("They push each other, but neither gives way.", {"agents": ("a", "b"), "polarity": "not"}),
         ("She stops him from falling.", {"act": "fall-down", "agents": ("b",), "polarity": "not"}),
