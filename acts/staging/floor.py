@@ -107,7 +107,7 @@ def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[Track], st
         if move.until:
             seconds *= 0.55
         _moved(move, who, tracks, standing, theirs, seconds, last=not later)
-    if track.frame and listed and listed[-1].way in ("away", "back", "past", "around"):
+    if track.frame and listed and listed[-1].way in ("away", "back", "past", "around", "along"):
         track.stay()
 
 

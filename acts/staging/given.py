@@ -40,6 +40,7 @@ _DRAFTED = 6
 """Frames between two poses of a bystander."""
 _RESTS, _STAYS, _FACES = 15, 0.03, 0.2
 """Frames before and after one at which somebody on their way rests, and the metres and radians that they may move."""
+_FEET = tuple(JOINT[f"{side}_{joint}"] for side in ("left", "right") for joint in ("ankle", "foot"))
 _PLACED = 30
 """Frames between two places of somebody whose poses are a draft."""
 
@@ -359,7 +360,10 @@ def _bystander_parts(
 
 
 def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int], *, waits: bool) -> list[Part]:
-    """A recorded draft of somebody with a way: of some joints where they walk or run ahead, and where they ``wait``."""
+    """A recorded draft of somebody with a way: of some joints where they walk or run ahead, and where they ``wait``.
+
+    The feet of a gait are held: by itself the network drags them over the floor.
+    """
     course, own = stretch.course(person), 2 * seed + person
     at = stretch.every(EVENLY)
     walks, poses = walking(course, own)
@@ -371,7 +375,9 @@ def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int]
         rests = at[(moved < _STAYS) & (turned < _FACES)]
         waiting = standing_by(course.places, course.headings, np.arange(stretch.frames) + stretch.start, own)
         parts.append((rests, waiting, (*TRUNK, *HANDS)))
-    return [replace(stretch.known(person, f, p[f], j), soft=True, free=True) for f, p, j in parts if len(f) > 1]
+    drafts = [replace(stretch.known(person, f, p[f], j), soft=True, free=True) for f, p, j in parts if len(f) > 1]
+    goes = at[walks[at]]
+    return [stretch.known(person, goes, poses[goes], _FEET), *drafts] if len(goes) > 1 else drafts
 
 
 def _dancing_parts(stretch: Stretch, seed: int, joints: Sequence[Sequence[int]]) -> tuple[list[Part], dict[int, Way2D]]:

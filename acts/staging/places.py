@@ -144,7 +144,7 @@ ROUND = 0.6
 """Metres from the middle of a seat at which people go round it."""
 HALT = 0.3
 """Seconds of its speed that a walk takes to stop."""
-MOST = 2.6
+MOST = 3.2
 """Metres a second of the fastest run that is planned."""
 TURNING = 0.9
 """Seconds of a half turn."""

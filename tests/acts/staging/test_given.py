@@ -10,7 +10,7 @@ from acts.staging.given import Story, plan_parts
 from acts.staging.poses import ALL, HANDS, JOINT
 from acts.staging.stage import scores_of
 from acts.staging.window import KnownFrames, Window
-from motion import FPS
+from motion import FPS, SMPL22
 from motion.transforms import Placement
 
 SECONDS = 5.0
@@ -51,9 +51,10 @@ def test_whose_hands_are_busy_is_drafted_as_walking_without_hands_and_not_as_wai
     assert max(part.frames[-1] for part in parts) < 80, "while they walk"
 
 
-def test_who_walks_is_drafted_from_head_to_foot_and_held_to_the_way_alone() -> None:
-    (walks, _) = (part for part in poses_of("A walks up to B.") if part.person == 0)
+def test_who_walks_is_drafted_from_head_to_foot_and_held_to_the_way_and_by_the_feet() -> None:
+    (feet, walks, _) = (part for part in poses_of("A walks up to B.") if part.person == 0)
     assert walks.soft and walks.free and not walks.joints
+    assert not feet.soft and {SMPL22.joint_names[joint][-5:] for joint in feet.joints} == {"ankle", "_foot"}
     legs = np.asarray(walks.positions)[:, [JOINT["left_ankle"], JOINT["right_ankle"]]]
     assert np.ptp(legs[:, 0, 2] - legs[:, 1, 2]) > 0.8, "in strides"
 
