@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from urllib.parse import parse_qs, urlsplit
 
-from webdemo.ui.components.player import PLAYER_FOLDER, PLOTLY_JS
+from webdemo.ui.components.player import PLAYER_FOLDER
 
 from .harness import UPDATES
 
@@ -58,12 +58,6 @@ def update(name: str) -> bytes:
     return json.dumps({k: v for k, v in UPDATES[name]().items() if k != "__type__"}).encode()
 
 
-@functools.cache
-def plotly() -> bytes:
-    """Plotly's script."""
-    return PLOTLY_JS.read_bytes()
-
-
 class Handler(SimpleHTTPRequestHandler):
     """Serves the page, the player's files, plotly and what the buttons do."""
 
@@ -79,8 +73,6 @@ class Handler(SimpleHTTPRequestHandler):
                 "buttons": "".join(f"<button>{name}</button>" for name in UPDATES),
             }
             self._send((PAGE % parts).encode(), "text/html; charset=utf-8")
-        elif address.path == "/plotly/plotly-gl3d.min.js":
-            self._send(plotly(), "text/javascript")
         elif address.path.removeprefix("/update/") in UPDATES:
             self._send(update(address.path.removeprefix("/update/")), "application/json")
         else:

@@ -22,8 +22,5 @@ def test_each_module_comes_once_after_what_it_imports(tmp_path: Path) -> None:
     lines += ['window.pdModules = { "/at/main.js": module0 };']
     assert [made.count(line) for line in lines] == [1] * len(lines)
     assert sorted(map(made.index, lines)) == list(map(made.index, lines)), "what is imported stands before"
-
-
-def test_the_first_parts_of_the_page_become_one_plain_script() -> None:
-    made = bundled([part.template.parent / part.module for part in FIRST], str)
-    assert not re.search(r"^(import|export) |import\.meta|</script", made, re.MULTILINE)
+    page = bundled([part.template.parent / part.module for part in FIRST], str)
+    assert not re.search(r"^(import|export) |import\.meta|</script", page, re.MULTILINE)

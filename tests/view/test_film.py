@@ -102,14 +102,6 @@ def test_people_are_seen_in_every_look_and_theme(look, theme):
     assert _look(np.asarray(picture), True) > 0.003 and _look(np.asarray(picture), False) > 0.003
 
 
-def _parting() -> Duet:
-    """Two who stand for a second and then run away from each other for three, at three metres a second each."""
-    rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
-    way = np.array([0.4 + 3.0 * max(i / 30 - 1, 0) for i in range(120)])[:, None, None] * np.array([0.3, 0, 1])
-    return Duet.from_positions(np.stack([rest - way, rest + way]).astype(np.float32), fps=30)
-
-
-PARTING = _parting()
 FAR = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([1.0, 0, 1.5])))
 
 

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import gradio as gr
 
 import acts
-from motion import Duet, InputError
+from motion import Clip, InputError
 from motion.formats import ImportChoices, read
 from motion.retarget import to_smpl
 from webdemo.inference.methods import AUTOMATIC, by_class, methods
@@ -314,19 +314,14 @@ class SceneEndpoint(Endpoint):
 
         def request() -> SceneRequest:
             fields = read_words(story, in_time())
-            given = _two_people(motion, reading_choices(asked)) if motion else None
+            given = read(Path(motion), longest=MOST_SECONDS, choices=reading_choices(asked)) if motion else None
+            if isinstance(given, Clip):
+                raise InputError(f"{Path(motion or '').name} holds one person: a scene goes on from a motion of two.")
             fields |= {key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None}
             fields |= {key: asked.get(key) or None for key in ("start", "end")}
-            return SceneRequest(**fields, motion=given)
+            return SceneRequest(**fields, motion=given and to_smpl(given))
 
         return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress, reads=bool(motion))
-
-
-def _two_people(path: str, choices: ImportChoices) -> Duet:
-    motion = read(Path(path), longest=MOST_SECONDS, choices=choices)
-    if not isinstance(motion, Duet):
-        raise InputError(f"{Path(path).name} holds one person: a scene goes on from a motion of two.")
-    return to_smpl(motion)
 
 
 class ReadEndpoint(Endpoint):

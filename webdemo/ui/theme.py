@@ -47,11 +47,7 @@ _VALUES = {
 }
 """Gradio's variables as this page sets them."""
 
-HEAD = """<style>
-/* Gradio scopes our style sheet below its container, whose hidden overflow would keep the stage from sticking. */
-body .gradio-container { overflow: clip !important; }
-</style>
-<script>
+HEAD = """<script>
 // Gradio takes Enter in a prompt; this adds Ctrl+Enter and Cmd+Enter.
 document.addEventListener("keydown", (event) => {
   if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
