@@ -28,7 +28,7 @@ FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen", 1]
 """What /generate is given: a second, one step, one try."""
 REACT = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False, "", 0, "", ""]
 """What /react is given after its file."""
-PREDICT = [0, 1, "still", "", 0, 0, "", ""]
+PREDICT = [0, 1, "still", 0, 1, "", 0, "", ""]
 """What /predict is given after its file."""
 
 

@@ -94,7 +94,7 @@ def _reaction(dice: random.Random, steps: int) -> Job:
 
 def _prediction(dice: random.Random, steps: int) -> Job:
     seconds = dice.choice((0.5, 1.0, 1.5))
-    data = (None, 1.5, seconds, "motion-mlp", 0, "", 0, "", "")
+    data = (None, 1.5, seconds, "motion-mlp", 0, 1, "", 0, "", "")
     return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
 
 

@@ -253,12 +253,12 @@ def test_nobody_inherits_from_an_earlier_account_of_the_same_name(
     first = people.arrive("ada")
     Administration(database, tmp_path).set_role("ada", admin=True)
     history = Notebook(database, tmp_path / "motions")
-    history.begin(first.owner, GenerateRequest(prompt="They bow."), "They bow.")
+    history.begin(first.owner, GenerateRequest(prompt="They bow.").to_dict(), "They bow.")
     assert not people.add("ada", "another password") and people.arrive("ada").key == first.key, "the same person"
     monkeypatch.setenv("PASDEDEUX_DATA", str(tmp_path))
     assert main(["admin", "delete", "ada"]) == 0 and people.empty
     assert not history.search(first.owner, Search()).total
-    history.begin(first.owner, GenerateRequest(prompt="They hug."), "They hug.")
+    history.begin(first.owner, GenerateRequest(prompt="They hug.").to_dict(), "They hug.")
     people.add("ada", "battery staple")
     assert people.arrive("ada").role == "" and not history.search(people.arrive("ada").owner, Search()).total
 
