@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -124,12 +125,21 @@ def postures(
         poses |= on_the_way
         now, pose, begins = change.posture, _MAKES[change.posture](place, angle), ends
     if own and now == "stands":
-        poses |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop))
+        poses |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop) if jumps else stop)
     elif now != "stands":
         poses |= _stays(pose, begins, stop)
     if now == "stands":
         poses |= dict(_jumping(jumps, start, stop, place, angle)) if jumps else {}
-    return [(frame, poses[frame]) for frame in sorted(poses) if start <= frame < stop]
+    listed = [(frame, poses[frame]) for frame in sorted(poses) if start <= frame < stop]
+    return sorted([*listed, *_lowered(listed)], key=lambda pose: pose[0])
+
+
+def _lowered(poses: Sequence[Pose]) -> Iterator[Pose]:
+    """Poses between two of a body that is low, which the network would raise meanwhile."""
+    for (first, low), (last, lower) in pairwise(poses):
+        if max(low[0, 1], lower[0, 1]) <= UPRIGHT:
+            for frame in range(first + HELD, last, HELD):
+                yield frame, low + float(minimum_jerk((frame - first) / (last - first))) * (lower - low)
 
 
 def _on_the_way(

@@ -85,7 +85,6 @@ def engine(request: pytest.FixtureRequest, weights: Path) -> Engine:
 
 OF_THE_NETWORK = {
     "test_a_hand_waves_on_the_way",
-    "test_a_person_types_with_moving_hands_on_a_seat",
     "test_an_arm_around_somebody_lies_on_their_far_shoulder_behind_them",
     "test_who_is_pulled_up_has_their_hand_held_while_they_are_down",
 }

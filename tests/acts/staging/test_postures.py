@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from acts.staging import score
+from acts.staging.places import Standing
+from acts.staging.postures import postures
 
 from .staged_words import changes, figures, leaps
 from .staged_words import score as of_words
@@ -109,3 +112,13 @@ def test_who_is_left_sitting_sat_from_the_start() -> None:
 )
 def test_bows_are_counted(sentence: str, found: dict[str, tuple[str, int]]) -> None:
     assert figures(sentence) == found
+
+
+def test_who_gets_down_to_the_floor_gets_lower_all_the_way_and_who_got_up_stays_up() -> None:
+    stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
+    down = postures([of_words("A sits down on the floor.")], 0, 0, 0, 150, stand, None)
+    heights = [float(pose[0, 1]) for _, pose in down]
+    assert heights == sorted(heights, reverse=True)
+    assert max(np.diff([frame for frame, pose in down if pose[0, 1] < 0.8])) <= 8, "nothing in between is left open"
+    up = postures([of_words("A gets up.")], 0, 0, 0, 150, stand, None)
+    assert up[-1][0] == 149 and up[-1][1][0, 1] > 0.9
