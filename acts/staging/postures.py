@@ -131,15 +131,15 @@ def postures(
     if now == "stands":
         poses |= dict(_jumping(jumps, start, stop, place, angle)) if jumps else {}
     listed = [(frame, poses[frame]) for frame in sorted(poses) if start <= frame < stop]
-    return sorted([*listed, *_lowered(listed)], key=lambda pose: pose[0])
+    return sorted([*listed, *_on_its_way(listed)], key=lambda pose: pose[0])
 
 
-def _lowered(poses: Sequence[Pose]) -> Iterator[Pose]:
-    """Poses between two of a body that is low, which the network would raise meanwhile."""
-    for (first, low), (last, lower) in pairwise(poses):
-        if max(low[0, 1], lower[0, 1]) <= UPRIGHT:
+def _on_its_way(poses: Sequence[Pose]) -> Iterator[Pose]:
+    """Poses on the way down, up and from one low pose to another, on which the network would rise or sink at will."""
+    for (first, pose), (last, then) in pairwise(poses):
+        if min(pose[0, 1], then[0, 1]) <= UPRIGHT:
             for frame in range(first + HELD, last, HELD):
-                yield frame, low + float(minimum_jerk((frame - first) / (last - first))) * (lower - low)
+                yield frame, pose + float(minimum_jerk((frame - first) / (last - first))) * (then - pose)
 
 
 def _on_the_way(

@@ -14,7 +14,7 @@ from motion import Duet, InputError
 from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
 from webdemo.inference.engine import judged, note, run_tries
-from webdemo.inference.requests.sampling import MAX_SEED, replayed
+from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.story import Beat
 
 SENTENCE = "A raises the left arm and turns around."
@@ -94,13 +94,6 @@ def test_seeds_go_on_from_zero_after_the_last() -> None:
     runs = Runs(STILL, ALL)
     assert result(replace(REQUEST, seed=MAX_SEED), runs).manifest["tries"]["seed"] == 0
     assert [asked.seed for asked in runs.asked] == [MAX_SEED, 0]
-
-
-def test_a_replay_is_one_try_of_the_seed_that_won() -> None:
-    found = result(REQUEST, Runs(ONE, ALL))
-    fields = replayed(REQUEST.to_dict(), found.manifest)
-    assert (fields["seed"], fields["tries"], fields["prompt"]) == (8, 1, SENTENCE)
-    assert replayed(REQUEST.to_dict(), {}) == REQUEST.to_dict()
 
 
 @pytest.mark.parametrize("tries", [0, 1.5])
