@@ -24,9 +24,9 @@ from motion.vectors import Array
 
 from .figure_floor import grounded_poses
 from .places import Way2D
-from .poses import ALL, HANDS, Pose, all_but
+from .poses import ALL, HANDS, JOINT, Pose, all_but
 from .postures import RISING, posture_joints, postures
-from .recordings import has_takes, performing
+from .recordings import LEGS, has_takes, performing
 from .score import Change, Score
 from .window import OFTEN, SETTLES, Part, Stretch, late_by
 
@@ -194,8 +194,10 @@ def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Arra
         return parts
     figure, at, poses = score.figures["ab"[person]], frames[shown], poses[shown]
     busy = has_takes(figure.figure) and (figure.meets or "ab"[person] in score.gestures)
-    body = all_but(HANDS) if busy else ALL
-    part = beat.known(person, at, poses, body, kept=not figure.figure.startswith("bows"))
+    body, bows = all_but(HANDS) if busy else ALL, figure.figure.startswith("bows")
+    if bows:  # the network has the legs
+        body = [joint for joint in body if joint == JOINT["pelvis"] or joint not in LEGS]
+    part = beat.known(person, at, poses, body, kept=not bows)
     if figure.in_time or figure.figure != DANCES:
         return [*parts, part]
     way = Way2D(person, at.tolist(), poses[:, 0][:, [0, 2]], heading(poses))

@@ -227,9 +227,6 @@ def test_who_is_pulled_up_has_their_hand_held_while_they_are_down(engine: Engine
     gap = nearest(found, 1, ["right_wrist"], ["right_wrist"])
     low = found[0, :, 0, 1] < 0.7
     assert gap[low].min() < 0.16 and low[0] and not low[-1]
-    apart = np.linalg.norm((found[0] - found[1])[:, 0, [0, 2]], axis=-1)
-    lean = (found[1] - found[1][:, :1])[:, SMPL22.index("neck"), 1]
-    assert lean[apart > 1.5].min() > 0.4, "they walk up bent, with an arm stretched out"
 
 
 @pytest.mark.parametrize(
