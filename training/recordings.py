@@ -53,12 +53,8 @@ STAYS, FACES = 0.45, 0.9
 """Metres and radians by which somebody who gestures on the spot moves and turns, at most."""
 FIGURES: Mapping[str, tuple[str, ...]] = {"dances": ("dance", "dance-show"), "shadow-boxes": ("shadow-box", "punch")}
 """Figures that go on, each with the actions of its recordings."""
-STIFF = ("giant", "chimpira", "childish")
-"""Manners in which people bow as others do."""
-BOWED, DEEPLY, BEGUN = 0.6, 1.0, 0.15
-"""Radians of the trunk of a bow, and of a deep one, at least, and the share of them from which it has begun."""
-AROUND = 10
-"""Frames before and after a bow."""
+BOWED, DEEPLY, BEGUN, AROUND = 0.6, 1.0, 0.15, 10
+"""Radians of a bow, and of a deep one, at least, the share of them from which it has begun, and frames beside it."""
 LEFT_OUT = ("cmu-dance-martial", "deepmimic")
 """Data sets with no dance that would be taken for one: temple dances, and a step or two."""
 LASTS, TRAVELS, LIVELY = 180, 1.1, 0.6
@@ -161,18 +157,19 @@ def bystanders(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
 
 
 def figures(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
-    """Names and positions (T, 22, 3) of whole bodies in a figure on the spot, its liveliest piece of each clip."""
+    """Names and positions (T, 22, 3) of people who do a figure around one place, and move a lot."""
     for figure, actions in FIGURES.items():
-        kept = list[Array]()
-        for clip in clips:
-            if clip.action in actions and clip.dataset not in LEFT_OUT and len(clip.positions) >= SHORTEST:
-                kept += lively_pieces(clip.positions.astype(np.float64))
-        yield from ((f"{figure}-{i}", canonicalize(piece)) for i, piece in enumerate(kept))
+        own = [clip.positions for clip in clips if clip.action in actions and clip.dataset not in LEFT_OUT]
+        pieces = [each[at : at + LASTS].astype(np.float64) for each in own for at in range(0, len(each), LASTS)]
+        for i, piece in enumerate(piece for piece in pieces if len(piece) >= SHORTEST):
+            speed = np.linalg.norm(np.diff(piece, axis=0), axis=-1).mean() * FPS
+            if speed > LIVELY and np.ptp(piece[:, 0][:, [0, 2]], axis=0).max() < TRAVELS:
+                yield f"{figure}-{i}", canonicalize(piece)
 
 
 def bows(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
     """Names and positions (T, 22, 3) of bows, and of deep ones."""
-    for i, clip in enumerate(clip for clip in clips if clip.action == "bow" and clip.style in (*PLAIN, *STIFF)):
+    for i, clip in enumerate(clip for clip in clips if clip.action == "bow"):
         trunk = clip.positions[:, NECK] - clip.positions[:, 0]
         lean = np.arctan2(np.linalg.norm(trunk[:, [0, 2]], axis=-1), trunk[:, 1])
         if lean.max() > BOWED:
@@ -182,27 +179,14 @@ def bows(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
             yield f"{name}-{i}", canonicalize(piece.astype(np.float64))
 
 
-def lively_pieces(positions: Array) -> list[Array]:
-    """The pieces of a recording (T, 22, 3) in which somebody moves a lot and stays near one place."""
-    length = min(LASTS, len(positions))
-    pieces = [positions[at : at + length] for at in range(0, len(positions) - length + 1, length)]
-    spans = [np.ptp(piece[:, 0][:, [0, 2]], axis=0).max() for piece in pieces]
-    return [piece for piece, span in zip(pieces, spans, strict=True) if span < TRAVELS and speed(piece) > LIVELY]
-
-
-def speed(positions: Array) -> float:
-    """The mean speed of the joints of a person (T, 22, 3), in metres a second."""
-    return float(np.linalg.norm(np.diff(positions, axis=0), axis=-1).mean()) * FPS
-
-
 def couples(data: Path) -> Iterator[tuple[str, Array]]:
     """Names and positions (T, 2, 22, 3) of two who dance with each other, where their hands are joined the longest."""
     for name, people in read_takes(data):
         first, last = danced(people)
         starts = range(first, last - TOGETHER + 1, 15)
         if name not in HELD_OUT and starts:
-            hands = people[:, :, WRISTS]
-            joined = np.linalg.norm(hands[0][:, :, None] - hands[1][:, None], axis=-1).min(axis=(1, 2)) < JOINED
+            gaps = people[0][:, WRISTS, None] - people[1][:, None, WRISTS]
+            joined = np.linalg.norm(gaps, axis=-1).min(axis=(1, 2)) < JOINED
             at = max(starts, key=lambda start: int(joined[start : start + TOGETHER].sum()))
             yield name, canonicalize(people[:, at : at + TOGETHER]).swapaxes(0, 1)
 

@@ -75,11 +75,6 @@ def walks(entry: Entry) -> bool:
     return any(shape.do == "go" for shape in entry.stage)
 
 
-def is_after(shape: shapes.Shape) -> bool:
-    """True for a way after the other person."""
-    return isinstance(shape, shapes.Go) and shape.way == "after"
-
-
 def is_near(act: Act, entry: Entry) -> bool:
     """True for an act that two people do within each other's reach."""
     handed = entry.group in _HANDED and (act.patient is not None or entry.mutual) and not walks(entry)
@@ -88,11 +83,9 @@ def is_near(act: Act, entry: Entry) -> bool:
 
 def reaches(act: Act, entry: Entry) -> bool:
     """True for an act that the other takes part in: it touches, holds, lifts or strikes them, or needs an answer."""
-    alone = len(act.agents) == 1 and act.patient is None  # who dances with nobody
-    joins = [
-        s for s in entry.stage if s.do in _JOINS and not (alone and isinstance(s, shapes.Hold) and s.hold == COUPLE)
-    ]
-    if entry.mutual or joins or any(shape.who != "agent" for shape in entry.stage):
+    if len(act.agents) == 1 and act.patient is None and any(getattr(s, "hold", "") == COUPLE for s in entry.stage):
+        return False  # they dance with nobody
+    if entry.mutual or any(shape.who != "agent" or shape.do in _JOINS for shape in entry.stage):
         return True
     return act.patient is not None and all(shape.do in ("place", "stay") for shape in entry.stage)
 
@@ -165,7 +158,8 @@ def standing_by(acts: Sequence[Act], done: Done, busy: Collection[str], known: L
     for who in {*"ab"} - {*busy}:
         own = [(act, e) for act, e in done if who in act.agents]
         theirs = [(act, e) for act, e in done if other_of(who) in act.agents and who not in act.agents]
-        denied = any(who in act.agents and not act.happens and not _stays(act, known) for act in acts)
+        refused = [known.entries.get(act.act) for act in acts if who in act.agents and not act.happens]
+        denied = any(entry is None or not only_stays(entry) for entry in refused)
         waits = bool(own) and all(only_stays(e) for _, e in own)
         touched = any(reaches(act, e) and not is_care(e) and act.direction != "up" for act, e in theirs)
         if touched or (own and not waits):
@@ -173,11 +167,6 @@ def standing_by(acts: Sequence[Act], done: Done, busy: Collection[str], known: L
         if waits or denied or any(not walks(e) for _, e in theirs):
             people.add(who)
     return frozenset(people)
-
-
-def _stays(act: Act, known: Lexicon) -> bool:
-    entry = known.entries.get(act.act)
-    return entry is not None and only_stays(entry)
 
 
 def loose(done: Done, idle: Collection[str]) -> frozenset[str]:

@@ -18,8 +18,6 @@ from .holds import HOLDS, danced
 from .places import EASE, MOST, Standing, Track, Way2D, bearing, direction, eased, sampled, smoothed
 from .score import Move, Way
 
-_DENSE = 4
-"""Frames from one place to the next that are given to a couple who dance in hold."""
 CLOSE = 0.9
 """Metres from each other at which people who walk up to each other are left to the network."""
 NEAR_BY = 0.6
@@ -282,14 +280,12 @@ def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> No
     turned = 2 * math.pi * move.turns * seconds * eased(time, min(0.5, 1.5 / seconds))
     angles, radii = start + turned, radius + (move.near / 2 - radius) * nearer
     line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
-    stop = min(track.frame + len(line), len(track.places))
     if move.way == "hold" and move.near == HOLDS["closed"].apart:
         line = line + danced(time * seconds, angles, np.sign(out @ (standing.places[0] - middle)) or 1.0)
-        track.dense.update(range(track.frame, stop, _DENSE))
-    track.places[track.frame : stop] = line[: stop - track.frame]
-    if move.way == "hold":
-        track.headings[track.frame : stop] = angles[: stop - track.frame] + math.pi
-    track.place, track.heading, track.frame = line[-1], float(angles[-1] + math.pi), stop
+    begins, room = track.frame, len(track.places) - track.frame
+    track.follow(line[:room], (angles + math.pi)[:room])
+    if move.way == "spar":
+        track.headings[begins : track.frame] = np.nan
 
 
 def _along(who: int, move: Move, track: Track, standing: Standing, seconds: float) -> None:

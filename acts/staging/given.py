@@ -375,9 +375,10 @@ def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int]
         rests = at[(moved < _STAYS) & (turned < _FACES)]
         waiting = standing_by(course.places, course.headings, np.arange(stretch.frames) + stretch.start, own)
         parts.append((rests, waiting, (*TRUNK, *HANDS)))
-    drafts = [replace(stretch.known(person, f, p[f], j), soft=True, free=True) for f, p, j in parts if len(f) > 1]
     goes = at[walks[at]]
-    return [stretch.known(person, goes, poses[goes], _FEET), *drafts] if len(goes) > 1 else drafts
+    feet: list[Part] = [stretch.known(person, goes, poses[goes], _FEET)] if len(goes) > 1 else []
+    drafts = [stretch.known(person, frames, known[frames], own) for frames, known, own in parts if len(frames) > 1]
+    return feet + [replace(draft, soft=True, free=True) for draft in drafts]
 
 
 def _dancing_parts(stretch: Stretch, seed: int, joints: Sequence[Sequence[int]]) -> tuple[list[Part], dict[int, Way2D]]:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
@@ -32,7 +31,7 @@ class Hold:
     lean: float = 0.0
 
 
-COUPLE: Final = "couple"
+COUPLE = "couple"
 """The hold of two who dance as a recorded couple does."""
 HOLDS: Mapping[str, Hold] = {
     "closed": Hold(0.6, 0.14),

@@ -196,13 +196,13 @@ class Track:
         at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
         self.follow(at, heading, still=1e-4)
 
-    def follow(self, places: Array, heading: float | None = None, *, still: float = 2e-3) -> None:
-        """Goes through places (N, 2), one a frame, and faces a heading or where it goes, by more than ``still``."""
+    def follow(self, places: Array, heading: Array | float | None = None, *, still: float = 2e-3) -> None:
+        """Goes through places (N, 2), one a frame, and faces headings or where it goes, by more than ``still``."""
         stop = self.frame + len(places)
         steps = np.diff(np.concatenate([self.place[None], places]), axis=0)
         facing = filled(np.arctan2(steps[:, 0], steps[:, 1]), np.linalg.norm(steps, axis=1) > still, self.heading)
         if heading is not None:
-            facing = np.full(len(places), self.heading + wrapped(heading - self.heading))
+            facing = np.unwrap(np.broadcast_to(self.heading + wrapped(np.asarray(heading) - self.heading), len(places)))
         self.places[self.frame : stop] = places
         self.dense.update(range(self.frame + EVENLY, stop, EVENLY))
         self.headings[self.frame : stop] = self._turned_into(np.unwrap(facing)) if heading is None else facing

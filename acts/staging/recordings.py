@@ -93,13 +93,9 @@ def sampled(poses: Array, at: Array) -> Array:
     return np.asarray((1 - share) * poses[before] + share * poses[before + 1])
 
 
-def recordings() -> tuple[Array, ...]:
-    """The people who stand by, (T, 22, 3) metres each at :data:`RATE`, around the origin and facing +Z in the mean."""
-    return tuple(_read("idle").values())
-
-
 @cache
 def _read(name: str) -> Mapping[str, Array]:
+    """Poses (T, 22, 3) in metres at :data:`RATE`, around the origin and facing +Z in the mean, by name."""
     clips = {}
     with np.load(_FOLDER / f"{name}.npz", allow_pickle=False) as kept:
         for each in sorted(kept.files):
@@ -229,7 +225,7 @@ def standing_by(place: Array, angle: float | Array, frames: Frames, seed: int) -
     Returns:
         (N, 22, 3) metres.
     """
-    dice, known = np.random.default_rng([seed, 2]), recordings()
+    dice, known = np.random.default_rng([seed, 2]), tuple(_read("idle").values())
     poses = known[int(dice.integers(len(known)))]
     begins = dice.uniform(0, len(poses)) * FPS / RATE
     return placed(sampled(poses, _to_and_fro(np.asarray(frames) + begins, len(poses))), place, angle)
@@ -249,6 +245,9 @@ def has_takes(figure: str) -> bool:
 def performing(figure: Figure, place: Array, angle: float, frames: int, seed: int) -> Array:
     """A person (T, 22, 3) who does a recorded figure around a place (2,), from where they stand by and back to it."""
     known = [poses for name, poses in _read("figures").items() if name.startswith(f"{figure.figure}-")]
+    if figure.times:  # those that fit best into their time
+        each = (frames / FPS - figure.late) / figure.times * RATE
+        known = sorted(known, key=lambda poses: abs(len(poses) - each))[: _FITTING // 2]
     poses, at = known[int(np.random.default_rng([seed, 6]).integers(len(known)))], np.arange(frames)
     if figure.mirrored:
         poses = mirrored(poses)

@@ -21,7 +21,6 @@ from .act_kinds import (
     figure_of,
     gesturing,
     hits,
-    is_after,
     is_attempt,
     is_manner,
     is_near,
@@ -52,8 +51,6 @@ PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
 ON_BENCH = 0.65
 """Metres between two who sit on one bench."""
-_DANCES = shapes.Figure(figure=DANCES)
-"""What somebody does who dances, and not with the other."""
 _JUMPS = 3
 """Jumps of a person who is already jumping when the beat begins."""
 _MOST = 5
@@ -218,7 +215,7 @@ class _Stage:
             case shapes.Hold(hold="twirl"):
                 self.twirls = people[0]
             case shapes.Hold(hold="couple") if len(people) == 1 and act.patient is None:
-                self.figures |= dict.fromkeys(people, _DANCES)
+                self.figures |= dict.fromkeys(people, shapes.Figure(figure=DANCES))
             case shapes.Hold():
                 self.hold = shape.hold
             case shapes.Pull():
@@ -302,7 +299,7 @@ class _Stage:
 
     def _chase(self, act: Act, shape: shapes.Go) -> None:
         """Both run after each other: a goes ahead, unless later words say who chases whom."""
-        chases = [each for each, entry in self.done if any(is_after(s) for s in entry.stage)]
+        chases = [each for each, entry in self.done if any(getattr(s, "way", "") == "after" for s in entry.stage)]
         if all(len(each.agents) == 2 for each in chases):
             self.moves.append(self._go(act, shape, "b"))
 
@@ -354,7 +351,7 @@ class _Stage:
         low = {who for who, listed in self.changes.items() if listed[-1].posture != "stands"}
         self.limbs = {who: limbs for who, limbs in self.limbs.items() if who not in low}
         if self.hold == COUPLE and (self.side or self.behind or self.moves):  # they dance, and not with each other
-            self.hold, self.figures = "", self.figures | dict.fromkeys("ab", _DANCES)
+            self.hold, self.figures = "", self.figures | dict.fromkeys("ab", shapes.Figure(figure=DANCES))
         if self.lift is not None:
             comes = next((move.person for move in self.moves if move.way == "to"), self.lift.comes)
             turns = bool(self.twirls) or any(move.way in ("turn", "face") for move in self.moves)

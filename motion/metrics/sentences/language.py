@@ -139,8 +139,7 @@ def measured(rule: str, motion: Motion, *, lacking: bool = False) -> str:
     for node in _calls(ast.parse(rule, mode="eval").body):
         if lacking and _name(node.func) in ("times", "exactly"):
             mask, count = (_value(argument, motion) for argument in node.args)
-            seen = _times(motion, mask)
-            if 0 < seen < count or (seen > count and _name(node.func) == "exactly"):
+            if 0 < (seen := _times(motion, mask)) < count or (seen > count and _name(node.func) == "exactly"):
                 return f"done {seen} time{'s' * (seen != 1)}, not {count}"
         if _name(node.func) in MEASURES:
             held = lacking and bool(np.any(_value(node, motion)))

@@ -7,7 +7,7 @@ import pytest
 
 from acts.shapes import Figure, Gesture
 from acts.staging.places import Course, Standing
-from acts.staging.recordings import dancing, performance, performing, recordings, standing_by, walking
+from acts.staging.recordings import _read, dancing, performance, performing, standing_by, walking
 from motion import FPS, SMPL22
 from motion.transforms import heading
 
@@ -37,7 +37,7 @@ def test_a_scene_goes_on_where_it_was_and_seeds_differ() -> None:
 
 def test_bones_are_those_of_the_skeleton() -> None:
     parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
-    for poses in recordings():
+    for poses in _read("idle").values():
         lengths = np.linalg.norm(poses[:, children] - poses[:, parents], axis=-1)
         np.testing.assert_allclose(lengths, np.broadcast_to(SMPL22.bone_lengths[children], lengths.shape), atol=0.004)
 

@@ -1,6 +1,6 @@
 """Records the moving picture of the README from a running lab.
 
-    python docs/picture.py http://127.0.0.1:7860 docs/page.webp
+    python -m tests.picture http://127.0.0.1:7860 docs/page.webp
 
 It needs playwright and Chromium, like the tests of the page.
 """
