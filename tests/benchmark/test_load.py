@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -41,7 +42,11 @@ def test_every_kind_of_job_comes_back(tmp_path: Path, monkeypatch: pytest.Monkey
     for name, less in (("FRAMES", 200), ("EVENTS", 30), ("TOP_UP", 2), ("PAGES", 4), ("UNREAD", 5), ("MESSAGES", 10)):
         monkeypatch.setattr(attackers, name, less)  # each way is tried, in a fraction of the time
     people = len(KINDS)
-    figures = run_load(people=people, minutes=0.001, steps=2)
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # as in a shell's background job
+    try:
+        figures = run_load(people=people, minutes=0.001, steps=2)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert figures["runs_done"] >= people == figures["people_served"], figures
     assert figures["runs_lost"] == figures["runs_swapped"] == figures["runs_refused_or_failed"] == 0, figures
     assert figures["memory_at_rest_before_mb"] > 0 and figures["memory_most_mb"] > 0

@@ -62,7 +62,12 @@ def attack_apart(url: str) -> Callable[[], dict[str, Any]]:
     ends that. It gives what was sent and what became of it, or raises EOFError where the attackers failed."""
     context = multiprocessing.get_context("fork")
     counts, theirs = context.Pipe(duplex=False)
-    process = context.Process(target=lambda: theirs.send(asyncio.run(attack(url))), daemon=True)
+
+    def work() -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job has it ignored
+        theirs.send(asyncio.run(attack(url)))
+
+    process = context.Process(target=work, daemon=True)
     process.start()
     theirs.close()
 
