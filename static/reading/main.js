@@ -370,8 +370,10 @@ class View {
 }
 
 /** `element` holds reading.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
-export function mount(element, props, watch, trigger) {
+export async function mount(element, props, watch, trigger) {
   const root = element.querySelector(".pdr");
+  const made = () => root.isConnected && document.querySelector("#seconds input[type=number]"); // Gradio may be later
+  for (let tries = 200; tries && !made(); tries -= 1) await new Promise((done) => setTimeout(done, 50));
   const keep = (value) => (props.value = value);
   const view = new View(root, { keep, ask: () => trigger("input"), editable: props.editable });
   const sync = () => view.sync(props);

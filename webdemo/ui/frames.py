@@ -32,7 +32,8 @@ _BEGIN = r"""<link rel="preload" as="script" href="%(plotly)s">
 <style>%(colours)s
 body { background: var(--pd-bg) !important; }
 body .gradio-container { overflow: clip !important; } /* hidden, it would keep the stage from sticking */
-.pdd:not(.pdd-styled), body .gradio-container > .main > .wrap:has(> .loading) { visibility: hidden; }
+.pdd:not(.pdd-styled), .pdd-early:has(> .pdd:not(.pdd-styled)),
+body .gradio-container > .main > .wrap:has(> .loading) { visibility: hidden; }
 </style>
 <script>
 (() => {
