@@ -131,10 +131,10 @@ def postures(
     if now == "stands":
         poses |= dict(_jumping(jumps, start, stop, place, angle)) if jumps else {}
     listed = [(frame, poses[frame]) for frame in sorted(poses) if start <= frame < stop]
-    return sorted([*listed, *_on_its_way(listed)], key=lambda pose: pose[0])
+    return sorted([*listed, *_in_between(listed)], key=lambda pose: pose[0])
 
 
-def _on_its_way(poses: Sequence[Pose]) -> Iterator[Pose]:
+def _in_between(poses: Sequence[Pose]) -> Iterator[Pose]:
     """Poses on the way down, up and from one low pose to another, on which the network would rise or sink at will."""
     for (first, pose), (last, then) in pairwise(poses):
         if min(pose[0, 1], then[0, 1]) <= UPRIGHT:
