@@ -24,6 +24,7 @@ _BY_FOOT = re.compile(r"\[(?:kick|step|hop|walk|run|march|limp|stumble|stamp|tur
 _NAMES = {"a": "person A", "b": "person B"}
 _COUNTS = {1: "once", 2: "twice", 3: "three times"}
 _PRONOUNS = frozenset(("it", "them", "something"))
+_OTHER = re.compile(r"(?<! each) other$")
 _PLAIN = frozenset(("a", "an", "the", "their"))
 _BEFORE_PEOPLE = frozenset(("to", "with", "at", "of"))
 _LEAN = frozenset(("to", "with", "at", "of", "on", "by", "in", "past", "from", "around", "behind", "into"))
@@ -212,7 +213,7 @@ def of_each(acts: Sequence[Act], known: Lexicon) -> tuple[str, str]:
 
 
 def short(act: Act, entry: Entry | None) -> str:
-    """An act in a few words, without its people: "pats right shoulder ×2", "does not wave".
+    """An act in a few words, beside its people: "pats on right shoulder ×2", "face each other", "does not wave".
 
     They are those of the entry's caption, or of its name where the caption describes the act by another verb, since
     it keeps to the words of the network. An act without an entry goes by its name.
@@ -225,22 +226,29 @@ def short(act: Act, entry: Entry | None) -> str:
         verb, _, rest = ahead.partition(" ")
         ahead = f"{singular(verb)} {rest}"
     plain = ahead or both
-    phrase = _phrase(act, entry)
+    phrase = _phrase(act, entry, "each other" if both else "")
     text = f"{ahead} {_VERB.sub(lambda m: m[1] if plain else singular(m[1]), phrase)}".strip()
-    told: list[str | None] = [act.side] if act.side in ("left", "right") else []
-    told += [act.direction] if act.direction in TURNS else []
-    told += [adverb for adverb in act.manner[:1] if adverb not in ("then", "finally")]
-    text = " ".join([text, *dict.fromkeys(word for word in told if word and f" {word} " not in f" {text} ")])
+    side = act.direction if act.direction in TURNS else act.side
+    if side in TURNS and f" {side} " not in f" {text} ":
+        turns = side == act.direction or "[turn]" in phrase
+        limb = by_limb(act, phrase).replace(" the ", " ")
+        text += limb if not turns else f" to the {side}" if side in ("left", "right") else f" {side}"
+    for adverb in act.manner[:1]:
+        if adverb not in ("then", "finally", "simultaneously") and f" {adverb} " not in f" {text} ":
+            text += f" {adverb}"
     return f"{text} ×{act.times}" if act.times is not None and act.times > 1 else text
 
 
-def _phrase(act: Act, entry: Entry | None) -> str:
-    """The words of :func:`short` with their verbs in brackets."""
+def _phrase(act: Act, entry: Entry | None, both: str) -> str:
+    """The words of :func:`short` with their verbs in brackets; ``both`` is what two who do it do it to."""
     name = act.act.split("-")
-    if entry is None or not entry.caption:
+    if entry is None:
         return " ".join(name)
-    caption = entry.caption[0]
     named = f"[{name[0]}] {' '.join(name[1:])}".strip().replace(" thing", f" {act.thing or 'something'}")
+    named = _OTHER.sub(f" {both or 'the other'}", named).removesuffix(" person")
+    if not entry.caption:
+        return named
+    act, caption = with_thing(act, entry.caption[0])
     verb = _VERB.search(caption)
     other = verb is None or verb[1] != name[0] or caption.startswith("{b}")
     no_limb = "{limb}" in caption and not act.part
@@ -254,21 +262,25 @@ def _phrase(act: Act, entry: Entry | None) -> str:
     of_part = f"{act.part_side} " if act.part_side else side
     values = {
         "a": "",
-        "b": "*",
+        "b": both or "*",
         "part": f"{of_part}{act.part}" if act.part else "",
         "side": side.strip(),
         "thing": act.thing or "something",
         "direction": act.direction or "",
         "limb": f"both {plural(act.part or 'hand')}" if act.side == "both" else f"{side}{act.part or 'hand'}",
     }
-    filled = _SLOT.sub(lambda m: f"{values.get(m[1], '')} ", caption.replace("{b} on the {part}", "{part}"))
+    if both:  # "stagger", not past each other
+        caption = re.sub(r" with \{b\}" if "past" in name else r" (with|past) \{b\}", "", caption)
+    filled = _SLOT.sub(lambda m: f"{values.get(m[1], '')} ", caption)
     kept: list[str] = []
     for word in filled.split():
-        if word in ("*", "'s"):
+        if word == "'s" and both:
+            kept[-1] += word
+        elif word in ("*", "'s"):
             while word == "*" and kept and kept[-1] in (_LEAN if act.patient is None else _BEFORE_PEOPLE):
                 kept.pop()
         elif word not in _PLAIN:
             kept.append(word)
-    while kept and kept[-1] in ("on", "of", "to", "with", "at"):
+    while kept and kept[-1] in ("on", "of", "to", "with", "at", "from", "against"):
         kept.pop()
-    return " ".join(kept)
+    return " ".join(kept).replace(" ,", ",").removesuffix("'s")

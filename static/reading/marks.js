@@ -51,7 +51,7 @@ export function people(act) {
   return act.patient ? `${agents} → ${act.patient.toUpperCase()}` : agents;
 }
 
-/** An act as a screen reader says it: "A to B: pats right shoulder, 2 times". */
+/** An act as a screen reader says it: "A to B: pats on right shoulder, 2 times". */
 export function spoken(act, said) {
   const agents = act.agents.map((who) => who.toUpperCase()).join(say("reading.and"));
   const whom = act.patient ? say("reading.to", { person: act.patient.toUpperCase() }) : "";

@@ -37,7 +37,7 @@ def test_third_persons_of_verbs() -> None:
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ({"act": "pat", "patient": "b", "part": "shoulder", "side": "right", "times": 2}, "pats right shoulder ×2"),
+        ({"act": "pat", "patient": "b", "part": "shoulder", "side": "right", "times": 2}, "pats on right shoulder ×2"),
         ({"act": "walk-up", "patient": "b", "direction": "up"}, "walks up"),
         ({"act": "skip"}, "skips"),
         ({"act": "skip", "patient": "b"}, "skips past"),
@@ -48,11 +48,19 @@ def test_third_persons_of_verbs() -> None:
         ({"act": "lift-spin", "patient": "b"}, "picks up and spins around"),
         ({"act": "put-down-thing", "thing": "cup"}, "puts down cup"),
         ({"act": "open-thing", "thing": "window"}, "opens window"),  # not the caption's door
-        ({"act": "hug", "agents": ("a", "b")}, "hug"),
+        ({"act": "hug", "agents": ("a", "b")}, "hug each other"),
+        ({"act": "face-other", "patient": "b"}, "faces the other"),
+        ({"act": "face-other", "agents": ("a", "b")}, "face each other"),
+        ({"act": "cover-eyes", "agents": ("a", "b")}, "cover each other's eyes"),
+        ({"act": "stagger", "agents": ("a", "b")}, "stagger"),
+        ({"act": "stand-close", "patient": "b"}, "stands close, face to face"),
+        ({"act": "take-from", "patient": "b", "thing": "box"}, "takes box"),  # not the caption's book
+        ({"act": "search-person", "patient": "b"}, "searches"),
+        ({"act": "step-aside", "side": "left", "direction": "right", "times": 2}, "steps aside to the right ×2"),
         ({"act": "hug", "patient": "b", "modality": "tried"}, "tries to hug"),
-        ({"act": "wave", "polarity": "not", "side": "left"}, "does not wave left"),
+        ({"act": "wave", "polarity": "not", "side": "left"}, "does not wave with left hand"),
         ({"act": "shake-hands", "agents": ("a", "b"), "polarity": "not"}, "do not shake hands"),
-        ({"act": "turn-around", "side": "left", "manner": ("slowly",)}, "turns around left slowly"),
+        ({"act": "turn-around", "side": "left", "manner": ("slowly",)}, "turns around to the left slowly"),
         ({"act": "of-a-lab"}, "of a lab"),
     ],
 )

@@ -54,8 +54,8 @@ test("spans behind the end, of an act without words, or of another sentence brea
 
 test("people of a chip, for the eye and for the ear", () => {
   const pat = act("1", ["a"], 0, 1, { patient: "b" });
-  assert.deepEqual([people(pat), spoken(pat, "pats right shoulder ×2")], [
-    "A → B", "A to B: pats right shoulder, 2 times",
+  assert.deepEqual([people(pat), spoken(pat, "pats on right shoulder ×2")], [
+    "A → B", "A to B: pats on right shoulder, 2 times",
   ]);
   const hug = act("1", ["a", "b"], 0, 1, { patient: null });
   assert.deepEqual([people(hug), spoken(hug, "hug")], ["A + B", "A and B: hug"]);
