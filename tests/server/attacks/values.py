@@ -9,7 +9,6 @@ from gradio.components import Component, Slider
 from pydantic import ValidationError
 
 from webdemo.ui.components.accepts import accepts, accepts_event
-from webdemo.ui.components.notebook import ACTS
 
 WRONG: tuple[Any, ...] = (
     {"path": "{upload}", "meta": {"_type": "gradio.FileData"}},
@@ -62,7 +61,7 @@ def event_data(component: Any, text: str) -> Iterator[Any]:
     schema = accepts_event(component).json_schema()
     value = _filled(schema, schema.get("$defs", {}), text)
     if isinstance(value, dict) and "act" in value:
-        yield from ({**value, "act": act} for act in ACTS)
+        yield from ({**value, "act": act} for act in ("search", "link", "describe", "remove", "compare"))
     else:
         yield value
 

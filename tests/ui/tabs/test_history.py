@@ -87,7 +87,7 @@ def test_a_card_tells_everything_of_a_run() -> None:
     assert ["Given", "walker.bvh"] in settings(run.request) and ["The given person", "reacts"] in settings(run.request)
     assert ["Seed", "12345678"] in settings(run.request) and ["Guidance", "4.5"] in settings(run.request)
     (card,) = shown(Found([run], 1), empty="")["entries"]
-    assert (card["favourite"], card["tags"], card["note"]) == (True, ["paper"], "Hands.")
+    assert (card["favourite"], card["tags"], card["note"]) == (True, ("paper",), "Hands.")
     assert facts(replace(run, state="failed", links=0)).endswith("✕ failed")
 
 
@@ -147,18 +147,15 @@ def test_an_export_says_what_is_in_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "data",
-    [
-        None,
-        [],
-        {"act": "drop", "ids": []},
-        {"act": "open", "ids": "hug"},
-        {"act": "open", "ids": ["a"] * (MOST_SHOWN + 1)},
-    ],
+    "data", [None, [], {"act": "open", "ids": "hug"}, {"act": "open", "ids": ["a"] * (MOST_SHOWN + 1)}]
 )
 def test_what_a_notebook_never_sends_is_refused(data: Any) -> None:
     with pytest.raises(InputError, match="something unknown"):
         Action.read(data)
+
+
+def test_an_act_that_the_notebook_does_not_know_is_refused() -> None:
+    assert "something unknown" in press(tab(Book(entry("hug"))), "drop", "hug").line
 
 
 def test_a_history_that_cannot_be_read_is_a_sentence() -> None:

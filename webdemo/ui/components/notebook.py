@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 
 from motion import InputError
 from webdemo.inference.methods import label_of
@@ -22,20 +22,6 @@ STEP = 60
 """Runs that are shown at first, and how many more at a time."""
 MOST_SHOWN = 500
 UNKNOWN = "The notebook sent something unknown: reload the page."
-ACTS = (
-    "search",
-    "open",
-    "favour",
-    "link",
-    "revoke",
-    "compare",
-    "study",
-    "publish",
-    "export",
-    "remove",
-    "restore",
-    "describe",
-)
 _MARKS = {"running": "⏳ running", "failed": "✕ failed", "cancelled": "✕ cancelled", "interrupted": "✕ interrupted"}
 
 
@@ -53,7 +39,7 @@ class Action(Sent):
     """A visitor's action in the notebook, as the browser sends it.
 
     Attributes:
-        act: one of :data:`ACTS`.
+        act: what is done, as ``static/notebook`` calls it.
         ids: of the chosen runs.
         search: what is searched for.
         limit: how many runs are shown at most.
@@ -61,7 +47,7 @@ class Action(Sent):
     """
 
     act: Text
-    ids: list[Text]
+    ids: list[Text] = Field(max_length=MOST_SHOWN)
     search: SentSearch | None = None
     limit: Finite | None = None
     title: Text | None = None
@@ -72,12 +58,9 @@ class Action(Sent):
     def read(cls, data: Any) -> Action:
         """The action that a browser sent; raises InputError for anything that the notebook does not send."""
         try:
-            action = cls.model_validate(data)
+            return cls.model_validate(data)
         except ValidationError:
             raise InputError(UNKNOWN) from None
-        if action.act not in ACTS or len(action.ids) > MOST_SHOWN:
-            raise InputError(UNKNOWN)
-        return action
 
     @property
     def one(self) -> str:
@@ -134,20 +117,8 @@ def shown(listed: Found, *, empty: str, removed: int = 0, search: Search | None 
 
 
 def _card(entry: Entry) -> dict[str, Any]:
-    return {
-        "id": entry.id,
-        "kind": entry.kind,
-        "title": entry.title,
-        "state": entry.state,
-        "message": entry.message or "",
-        "favourite": entry.favourite,
-        "links": entry.links,
-        "tags": list(entry.tags),
-        "note": entry.note,
-        "thumbnail": entry.thumbnail,
-        "facts": facts(entry),
-        "settings": [list(pair) for pair in settings(entry.request)],
-    }
+    told = {name: value for name, value in asdict(entry).items() if name not in ("request", "created")}
+    return told | {"facts": facts(entry), "settings": [list(pair) for pair in settings(entry.request)]}
 
 
 def made_by(label: str, asked: Mapping[str, Any]) -> list[str]:
