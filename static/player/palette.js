@@ -38,7 +38,10 @@ export const css = (c) => `rgb(${c.slice(0, 3).map((v) => Math.round(255 * v)).j
 /** Makes a page of our own dark or light as it is `asked` for, or else as the system is. */
 export function follow(asked = null) {
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  const paint = () => document.body.classList.toggle("dark", asked === "dark" || (asked !== "light" && dark.matches));
+  const paint = () => {
+    const on = document.body.classList.toggle("dark", asked === "dark" || (asked !== "light" && dark.matches));
+    document.documentElement.style.colorScheme = on ? "dark" : "light";
+  };
   dark.addEventListener("change", paint);
   paint();
 }

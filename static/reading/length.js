@@ -15,18 +15,24 @@ export function advice(needed, seconds, most) {
 }
 
 export class Length {
-  /** `field` is the page's slider of seconds, if the prompt has one, and `prompt` its field of text. */
-  constructor(host, field, prompt) {
+  /** `tab` is the part of the page around the prompt, with a slider that begins with `usual` seconds, or with none. */
+  constructor(host, tab, usual) {
     this.host = host;
-    this.number = field?.querySelector("input[type=number]") ?? null;
-    this.most = Number(field?.querySelector("input[type=range]")?.max ?? 0);
-    this.usual = this.own = Number(this.number?.value);
+    this.tab = tab;
+    this.usual = this.own = usual;
     this.chosen = false; // by hand, by an example or a link: any value that is not our own
     this.typed = null;
     this.needed = null;
-    prompt?.addEventListener("input", (event) => event.isTrusted && (this.typed = event.target.value));
-    field?.addEventListener("input", () => this.draw(this.needed));
+    tab.addEventListener("input", ({ target, isTrusted }) => {
+      if (target.closest("#seconds")) this.draw(this.needed);
+      else if (isTrusted && target.matches(".pd-ask textarea")) this.typed = target.value;
+    });
     host.addEventListener("click", (event) => event.target.closest("button") && this.set(this.seconds));
+  }
+
+  /** The slider's field, which Gradio may put into the page after the prompt. */
+  get number() {
+    return this.tab.querySelector("#seconds input[type=number]");
   }
 
   /** A run begins: a length that comes after it is only advised, so that the settings stay those of the run. */
@@ -37,12 +43,15 @@ export class Length {
   /** Shows what acts need that take so many seconds, null where nothing is known of them, or lengthens the motion. */
   draw(needed, text = null) {
     this.needed = needed;
-    if (this.number && Number(this.number.value) !== this.own) this.chosen = true;
-    if (this.number && needed && !this.chosen && text !== null && text === this.typed) {
-      const seconds = Math.min(Math.max(needed, this.usual), this.most);
+    const { number } = this;
+    if (!number) return;
+    const most = Number(number.max);
+    if (Number(number.value) !== this.own) this.chosen = true;
+    if (needed && !this.chosen && text !== null && text === this.typed) {
+      const seconds = Math.min(Math.max(needed, this.usual), most);
       if (seconds !== this.own) this.set(seconds);
     }
-    const found = this.number && needed ? advice(needed, Number(this.number.value), this.most) : null;
+    const found = needed ? advice(needed, Number(number.value), most) : null;
     this.host.hidden = !found;
     if (!found) return;
     this.host.querySelector("span").textContent = found.text;
@@ -53,8 +62,9 @@ export class Length {
   }
 
   set(seconds) {
+    const { number } = this;
     this.own = seconds;
-    this.number.value = String(seconds);
-    for (const kind of ["input", "change", "blur"]) this.number.dispatchEvent(new Event(kind, { bubbles: true }));
+    number.value = String(seconds);
+    for (const kind of ["input", "change", "blur"]) number.dispatchEvent(new Event(kind, { bubbles: true }));
   }
 }

@@ -14,7 +14,7 @@ const SOON = 700; // milliseconds after an edit in which another may come
 
 class View {
   /** `keep` takes the component's value, and `ask` sends it to the server; `editable` plans can be edited. */
-  constructor(root, { keep, ask, editable }) {
+  constructor(root, { keep, ask, editable, usual }) {
     this.root = root;
     this.keep = keep;
     this.ask = ask;
@@ -29,10 +29,7 @@ class View {
     this.verdicts = new Map();
     this.waiting = false; // a run, for its text to be read
     this.chosen = null; // the id of the act whose panel is open
-    const lab = root.closest(".pd-lab");
-    this.length = new Length(
-      this.find(".pdr-length"), lab?.querySelector("#seconds"), root.closest(".pd-ask")?.querySelector("textarea"),
-    );
+    this.length = new Length(this.find(".pdr-length"), root.closest(".pd-lab"), usual);
     this.paths = editable ? new Paths(root, () => this.hold(), () => this.makeAgain()) : null;
     for (const kind of ["pointerover", "focusin"]) root.addEventListener(kind, (event) => this.point(event.target));
     for (const kind of ["pointerleave", "focusout"]) root.addEventListener(kind, () => this.point(null));
@@ -370,12 +367,10 @@ class View {
 }
 
 /** `element` holds reading.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
-export async function mount(element, props, watch, trigger) {
+export function mount(element, props, watch, trigger) {
   const root = element.querySelector(".pdr");
-  const made = () => root.isConnected && document.querySelector("#seconds input[type=number]"); // Gradio may be later
-  for (let tries = 200; tries && !made(); tries -= 1) await new Promise((done) => setTimeout(done, 50));
   const keep = (value) => (props.value = value);
-  const view = new View(root, { keep, ask: () => trigger("input"), editable: props.editable });
+  const view = new View(root, { keep, ask: () => trigger("input"), editable: props.editable, usual: props.usual });
   const sync = () => view.sync(props);
   watch(["text", "shown", "checked"], sync);
   sync();

@@ -255,7 +255,9 @@ class Editor {
       event.preventDefault();
     });
     field.addEventListener("blur", () => close(true, false));
-    cell.parentElement.append(field);
+    const { left, width } = cell.parentElement.style;
+    Object.assign(field.style, { left: `max(0px, min(${left}, 100% - 240px))`, minWidth: `max(${width}, 240px)` });
+    cell.closest(".pds-lane").append(field);
     field.focus();
     field.select();
   }

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from PIL import Image
 from playwright.sync_api import Page
 
 from .playing import unfold
@@ -51,6 +53,11 @@ def test_a_phone_has_the_player_high_and_no_sideways_scroll(server: SimpleNamesp
         room = phone.evaluate(_ROOM, [field, "InterGen, person to person"])
         assert room >= 0, f"{field} lacks {-room:g} pixels"
         assert phone.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+def test_a_dark_page_is_dark_before_its_scripts_run(server: SimpleNamespace, open_page: Callable) -> None:
+    page = open_page(server.url, color_scheme="dark", java_script_enabled=False)
+    assert Image.open(io.BytesIO(page.screenshot())).convert("RGB").getpixel((5, 5)) == (18, 22, 30)
 
 
 def test_the_player_is_under_ten_tabs_from_the_prompt(server: SimpleNamespace, open_page: Callable) -> None:

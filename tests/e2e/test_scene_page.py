@@ -203,7 +203,10 @@ def test_words_and_beats_follow_each_other(page: Any) -> None:
     words.fill("They bow. Then they hug.")
     page.locator("#scene-part-words textarea").focus()
     page.wait_for_function("document.querySelectorAll('.pds-lane-words .pds-cell').length === 2")
+    page.set_viewport_size({"width": 390, "height": 844})
     cells.nth(1).click()
+    field, line = (page.locator(each).bounding_box() for each in (".pds-words", ".pds-scroll"))
+    assert field["x"] + field["width"] <= line["x"] + line["width"], "on a phone, the last beat's words are in view"
     page.locator(".pds-words").fill("They wave.")
     page.keyboard.press("Enter")
     page.wait_for_function("document.querySelector('#scene-prompt textarea').value === 'They bow. They wave.'")

@@ -25,15 +25,17 @@ test("acts that need more than a motion can have send people to the tab Scene", 
 /** A field of seconds at 5 of at most 10, and a prompt, both as a page has them. */
 function page() {
   const heard = {};
-  const number = { value: "5", dispatchEvent: () => heard.field?.() };
-  const field = {
-    querySelector: (selector) => (selector.includes("range") ? { max: "10" } : number),
-    addEventListener: (kind, listener) => (heard.field = listener),
-  };
-  const prompt = { addEventListener: (kind, listener) => (heard.prompt = listener) };
+  let hear;
+  const input = (target, isTrusted) => hear({ isTrusted, target });
+  const number = { value: "5", max: "10", closest: () => true, dispatchEvent: () => input(number, false) };
+  const shown = [];
+  const tab = { querySelector: () => shown[0] ?? null, addEventListener: (kind, listener) => (hear = listener) };
   const host = { addEventListener() {}, querySelector: () => ({}) };
-  const type = (value) => heard.prompt({ isTrusted: true, target: { value } });
-  return { length: new Length(host, field, prompt), number, host, type };
+  const type = (value) => input({ value, closest: () => null, matches: () => true }, true);
+  const length = new Length(host, tab, 5);
+  length.draw(null);
+  shown.push(number); // Gradio puts it there later
+  return { length, number, host, type };
 }
 
 test("a length that comes after the run of its sentence has begun is only advised", () => {

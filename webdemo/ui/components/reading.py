@@ -39,9 +39,7 @@ _TYPED = """(text) => ({ __type__: "update", props: { text: text ?? "" } })"""
 
 _READ_FIRST = """async (...values) => {
   const [id, text, seconds] = %s;
-  const view = () => document.querySelector(`#${id} .pdr`)?.view;
-  for (let looks = 0; !view() && looks < 40; looks++) await new Promise((done) => setTimeout(done, 50));  // a new page
-  await view()?.readFirst(values[text] ?? "");
+  await document.querySelector(`#${id} .pdr`)?.view?.readFirst(values[text] ?? "");
   const shown = document.querySelector("#seconds input[type=number]");
   if (shown) values[seconds] = Number(shown.value);
   return values;
@@ -73,13 +71,14 @@ class Reading(Part):
     Args:
         value: as the browser sends it.
         editable: whether the plan can be edited.
+        usual: seconds of the page's slider at first, where it has one.
         elem_id: id of the element in the page.
     """
 
     accepts = TypeAdapter(SentReading | None)
     template = READING_FOLDER / "reading.html"
     style = scoped(READING_FOLDER / "reading.css")
-    declared: ClassVar = {"text": "", "shown": None, "checked": {}, "editable": False}
+    declared: ClassVar = {"text": "", "shown": None, "checked": {}, "editable": False, "usual": 0}
 
     def read_first(self, prompt: gr.Textbox, seconds: gr.Slider, inputs: Iterable[gr.Component]) -> str:
         """JavaScript for a run of ``inputs``, a set, that waits until its prompt is read and takes the length then."""

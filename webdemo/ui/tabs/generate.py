@@ -157,7 +157,8 @@ class GenerateTab(JobTab):
             with gr.Row(elem_classes="pd-chips"):
                 self.gallery = Gallery(elem_id="gallery", elem_classes="pd-gallery", min_width=0)
                 self.chips = [chip(name) for name, _ in EXAMPLES]
-            self.reading = Reading(editable=True, elem_id="reading", elem_classes="pd-reading")
+            usual = GenerateRequest.seconds
+            self.reading = Reading(editable=True, usual=usual, elem_id="reading", elem_classes="pd-reading")
         self.class_name = gr.Dropdown(
             classes,
             value=None,
