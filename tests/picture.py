@@ -13,7 +13,10 @@ import shutil
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page, expect, sync_playwright
+
+from tests.e2e.conftest import FLAGS
+from tests.e2e.playing import pause
 
 SIZE = (1240, 775)
 SHOWN = (992, 620)
@@ -21,18 +24,15 @@ SHOWN = (992, 620)
 SENTENCE = "Two people walk up to each other and give each other a high five."
 EVERY, FPS = 3, 10
 """Frames of the motion from one picture to the next, and pictures a second: the motion at its own speed."""
-FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
-def generate(page: Page, sentence: str, seed: int) -> int:
+def generate(page: Page, sentence: str) -> int:
     """Generates a motion on the page and pauses it; returns the number of its frames."""
     page.fill("#prompt textarea", sentence)
-    page.get_by_label("Seed").first.fill(str(seed))
-    page.get_by_role("button", name="Generate", exact=True).click()
-    page.get_by_text("Done in").first.wait_for(timeout=120_000)
+    page.click("button#generate")
+    page.wait_for_selector("#status .pd-done", timeout=120_000)
     page.wait_for_function("window.__pasdedeux.playing", timeout=60_000)
-    page.locator(".pdd-play").click()
-    page.wait_for_function("!window.__pasdedeux.playing && window.__pasdedeux.loops === 0")
+    pause(page)
     return 1 + int(page.locator(".pdd-range").get_attribute("max") or 0)
 
 
@@ -53,14 +53,13 @@ def main() -> None:
     parser.add_argument("url", help="of a running lab")
     parser.add_argument("out", type=Path, help="the .webp to write")
     parser.add_argument("--sentence", default=SENTENCE)
-    parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         page = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]})
         page.goto(options.url)
-        page.locator(".pdd-play:visible").wait_for(timeout=60_000)
-        pictures = record(page, generate(page, options.sentence, options.seed))
+        expect(page.locator("#model-state")).to_contain_text("Model ready", timeout=60_000)
+        pictures = record(page, generate(page, options.sentence))
         browser.close()
     pictures[0].save(
         options.out, save_all=True, append_images=pictures[1:], duration=round(1000 / FPS), loop=0, quality=45
