@@ -16,24 +16,18 @@ export async function openFilm(video, file) {
   if (file.type.startsWith("image/")) throw new FilmError(say("camera.photo"));
   if (file.size > LARGEST)
     throw new FilmError(say("camera.too_big", { size: (file.size / 1e9).toFixed(1), most: LONGEST }));
-  const address = URL.createObjectURL(file);
-  video.src = address;
+  const refuse = (key, facts) => {
+    close(video);
+    throw new FilmError(say(key, facts));
+  };
+  video.src = URL.createObjectURL(file);
   video.load();
   const opened = await first(video, { loadeddata: true, error: false }, 20000);
-  if (!opened || !video.videoWidth) {
-    close(video);
-    throw new FilmError(say("camera.codec"));
-  }
+  if (!opened || !video.videoWidth) refuse("camera.codec");
   if (!Number.isFinite(video.duration)) await findEnd(video);
   const { duration } = video;
-  if (!(duration >= SHORTEST)) {
-    close(video);
-    throw new FilmError(say("camera.short"));
-  }
-  if (duration > LONGEST + 0.5) {
-    close(video);
-    throw new FilmError(say("camera.long", { seconds: Math.round(duration), most: LONGEST }));
-  }
+  if (!(duration >= SHORTEST)) refuse("camera.short");
+  if (duration > LONGEST + 0.5) refuse("camera.long", { seconds: Math.round(duration), most: LONGEST });
 }
 
 /** Lets go of the film. */

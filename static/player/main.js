@@ -38,8 +38,8 @@ let early = null; // gives the player of `begin` to the page, once that has a pl
 /** Plays the example of the page that Gradio is given this configuration of, where the page's first player will be. */
 export function begin({ components }) {
   const first = components.find(({ props }) => props.elem_id === "player")?.props;
-  if (!first?.value) return;
   follow(new URLSearchParams(location.search).get("__theme"));
+  if (!first?.value) return;
   warmBodies();
   const place = node("div", "pdd-early");
   place.innerHTML = first.html_template;
