@@ -201,8 +201,8 @@ def test_a_kept_run_opens_with_its_own_plan(tab: GenerateTab) -> None:
     acts = {"acts": [{"id": "7", "act": "hug", "agents": ["a", "b"]}]}
     by_hand = {**acts, "reader": "hand"}
     for asked, said, edited in (
-        ({"acts": by_hand}, {"7": "hug"}, True),
-        ({"acts": acts}, {"7": "hug"}, False),  # as earlier versions kept them
+        ({"acts": by_hand}, {"7": "hug each other"}, True),
+        ({"acts": acts}, {"7": "hug each other"}, False),  # as earlier versions kept them
         ({}, {"1": "wave"}, False),
     ):
         result = result_of(tab).result
