@@ -26,9 +26,9 @@ EVERY, FPS = 3, 10
 """Frames of the motion from one picture to the next, and pictures a second: the motion at its own speed."""
 
 
-def generate(page: Page, sentence: str) -> int:
+def generate(page: Page) -> int:
     """Generates a motion on the page and pauses it; returns the number of its frames."""
-    page.fill("#prompt textarea", sentence)
+    page.fill("#prompt textarea", SENTENCE)
     page.click("button#generate")
     page.wait_for_selector("#status .pd-done", timeout=120_000)
     page.wait_for_function("window.__pasdedeux.playing", timeout=60_000)
@@ -52,14 +52,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Record a moving picture of the page.")
     parser.add_argument("url", help="of a running lab")
     parser.add_argument("out", type=Path, help="the .webp to write")
-    parser.add_argument("--sentence", default=SENTENCE)
     options = parser.parse_args()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         page = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]})
         page.goto(options.url)
         expect(page.locator("#model-state")).to_contain_text("Model ready", timeout=60_000)
-        pictures = record(page, generate(page, options.sentence))
+        pictures = record(page, generate(page))
         browser.close()
     pictures[0].save(
         options.out, save_all=True, append_images=pictures[1:], duration=round(1000 / FPS), loop=0, quality=45

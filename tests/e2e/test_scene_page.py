@@ -201,7 +201,7 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
 def test_words_and_beats_follow_each_other(page: Any) -> None:
     words, cells = page.locator("#scene-prompt textarea"), page.locator(".pds-lane-words .pds-cell")
     words.fill("They bow. Then they hug.")
-    page.locator("#scene-part-words textarea").focus()
+    words.blur()
     page.wait_for_function("document.querySelectorAll('.pds-lane-words .pds-cell').length === 2")
     page.set_viewport_size({"width": 390, "height": 844})
     cells.nth(1).click()
@@ -214,6 +214,6 @@ def test_words_and_beats_follow_each_other(page: Any) -> None:
     page.keyboard.press("End")
     page.keyboard.type(" They nod.")
     page.wait_for_function("!document.querySelector('.pds').editor.story.ahead")
-    page.locator("#scene-part-words textarea").focus()
+    words.blur()
     page.wait_for_function("document.querySelectorAll('.pds-lane-words .pds-cell').length === 3")
     assert cells.all_inner_texts() == ["They bow.", "They wave.", "They nod."]
