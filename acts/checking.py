@@ -174,7 +174,8 @@ def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Map
         stays = begins and _seen(other, known) == _seen(act, known) and last >= theirs[0] + motion.fps
         goes_on = answers or stays or (not begins and last >= theirs[1] + motion.fps)
         if max(moments) <= first + _LATER * motion.fps and not goes_on:
-            return f"does not come after “{before[other.id].words}”"
+            times = f"at {max(moments) / motion.fps:.1f} s, and that at {first / motion.fps:.1f} s"
+            return f"does not come after “{before[other.id].words}”: {times}"
     same = [other for other in told if (other.act, other.agents) == (act.act, act.agents)]
     if same and any(len(_stretches(mask, motion)) <= len(same) for mask in _seen(act, known)):
         between = [other for other in told if other not in same]  # done again: as many times as it is said

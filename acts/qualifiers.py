@@ -58,7 +58,7 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     if act.direction is not None and act.direction not in words and "way" not in names and not (own or leaves):
         yield "which way", _goes_way(act, who) if goes else ""
     if abs(act.speed - 1.0) > 0.3:  # who strolls walks
-        yield "how fast", _at_speed(act.speed, goes, who) if goes else ""
+        yield "how fast", _at_speed(act.speed, goes, who, mask) if goes else ""
     if act.distance is not None:
         near = f"happens(near({1.3 * act.distance + 0.2:.2f}), 1)" if "metres" in names else ""
         way = f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))"
@@ -114,9 +114,10 @@ def _goes_way(act: Act, who: str) -> str:
     return ahead.get(act.direction or "", "")
 
 
-def _at_speed(factor: float, goes: Go, who: str) -> str:
-    """Faster, or nowhere as fast, as half way between the usual speed and the one that the words ask for."""
+def _at_speed(factor: float, goes: Go, who: str, mask: str) -> str:
+    """Faster, or nowhere as fast, as half way between the usual speed and the one asked for, while the act is seen."""
     between = goes.speed * (1.0 + factor) / 2.0
     if factor > 1.0:
         return f"happens(walks({who}, 0.4, {between:.2f}))"
-    return f"never(walks({who}, 0.7, {max(between, 0.6):.2f}))"  # a single stride may be as fast
+    slow = f"walks({who}, 0.7, {max(between, 0.6):.2f})"  # a single stride may be as fast
+    return f"never(both({slow}, {mask}), 0.5)" if mask else f"never({slow})"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from acts import lexicon
 from acts.checking import cast
 from motion.metrics.sentences.joints import Motion
-from motion.metrics.sentences.language import check
+from motion.metrics.sentences.language import check, measured
 from motion.transforms import facing
 
 RECORDED = Path(__file__).parents[1] / "data" / "bystanders" / "bystanders.npz"
@@ -78,3 +79,10 @@ def test_no_rule_holds_on_bystanders_but_for_what_they_do(kind: str) -> None:
         if entry.rule and name not in does and all(check(cast(rule, who, whom), motion) for rule in entry.rule)
     }
     assert not found
+
+
+def test_every_rule_that_fails_says_what_is_missing() -> None:
+    motion = pair(*PAIRS["idle"][0])
+    rules = [cast(rule, "a", "b") for entry in lexicon().entries.values() for rule in entry.rule]
+    said = {rule: measured(rule, motion, lacking=True) for rule in rules if not check(rule, motion)}
+    assert not [rule for rule, reason in said.items() if not re.search(r"needed|not ", reason)]

@@ -7,18 +7,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from acts import Plan, lexicon, read
-from acts.checking import Verdict, cast, checked
+from acts import Plan, read
+from acts.checking import Verdict, checked
 from acts.plan import Act, Relation
 from motion import Duet
 from motion.metrics.sentences.joints import Motion
-from motion.metrics.sentences.language import check
 from motion.skeleton import SBU15
 from tests.motion.metrics.test_sentence_shapes import Edit, duet, each, index, put, shift, spin, tilt
-
-ENTRIES = lexicon().entries
-STANDING = {"stand-still", "freeze", "keep-distance", "face-other"}
-"""Acts of two people who stand and look at each other."""
 
 
 def plan(*acts: Act) -> Plan:
@@ -52,20 +47,6 @@ def on_other(part: str) -> Motion:
 
 
 # ---- rules -----------------------------------------------------------------------------------------------
-def test_no_rule_passes_on_two_people_who_stand_still() -> None:
-    """They stand as the lab's people do where nothing is told: at its distance, and never quite motionless."""
-    still = duet(gap=1.29)
-    sway = 0.01 * np.sin(np.arange(len(still.positions[0])) / still.fps * 2 * np.pi / 3)
-    still.positions[..., 0] += sway[:, None] * np.linspace(0, 1, still.positions.shape[2])
-    still = Motion(still.positions, still.fps)
-    passing = {
-        name
-        for name, entry in ENTRIES.items()
-        if entry.rule and all(check(cast(rule, "a", "b"), still) for rule in entry.rule)
-    }
-    assert passing <= STANDING
-
-
 DOES: dict[str, Motion] = {
     "walk-away": duet(shift((0, 0, 0), (0, 0, -2))),
     "walk-up": duet(shift((0, 0, -3), (0, 0, 0))),
@@ -139,14 +120,11 @@ def test_what_no_rule_covers_is_not_judged() -> None:
 
 # ---- measures --------------------------------------------------------------------------------------------
 def test_a_measure_says_how_far_off_it_was() -> None:
-    assert one(told("hand-on", part="shoulder"), duet(gap=1.8)).measure.startswith("hand 1.")
+    far = one(told("hand-on", part="shoulder"), duet(gap=1.8)).measure
+    assert far.startswith("hand 1.") and far.endswith(" m from the shoulder, 25 cm needed")
     assert one(told("walk-up"), duet()).measure == "A comes 0 cm nearer, 50 cm needed"
-    assert one(told("turn-around"), duet(spin(40))).measure.startswith("A turns by 3")
-    near = duet(gap=0.6)
-    near.positions[0, :, index("left_wrist")] = near.positions[1, :, index("right_shoulder")] + [0, 0.34, 0]
-    assert one(told("hand-on", part="shoulder"), Motion(near.positions, 30.0)).measure.endswith(
-        "cm from the shoulder, 25 cm needed"
-    )
+    run = np.interp(np.arange(len(duet().positions[0])), [0, 30, 119], [-1.0, -4.0, -3.2])  # away, and up slowly
+    assert one(told("walk-up", speed=0.5), duet(lambda both: both[0, ..., 2].__iadd__(run[:, None]))).done
 
 
 # ---- order -----------------------------------------------------------------------------------------------
@@ -413,7 +391,7 @@ def thrust(both: np.ndarray, metres: float, up: float = -0.1) -> None:
 @pytest.mark.parametrize(
     ("name", "shown", "beyond", "before"),
     [
-        ("jump", for_a_while(lambda both, up: np.add.at(both, (0, ..., 1), up), 6), 0.09, 0.07),
+        ("jump", for_a_while(lambda both, up: np.add.at(both, (0, ..., 1), up), 6), 0.11, 0.09),
         ("drop-head", tilted(1), 24, 20),
         ("look-up", tilted(-1), 28, 24),
         ("punch", for_a_while(thrust, 4), 0.35, 0.31),

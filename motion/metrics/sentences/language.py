@@ -8,16 +8,14 @@ keywords are passed on as they are.
 from __future__ import annotations
 
 import ast
-import inspect
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from . import paths, poses, shapes, touches  # noqa: F401 (they fill the vocabulary)
+from . import measures, paths, poses, shapes, touches  # noqa: F401 (they fill the vocabulary)
 from .joints import PREDICATES, Mask, Motion, longest, stretches
-from .measures import MEASURES
-from .paths import WALK
 
 SLACK = 0.3
 """Seconds by which the middle of a later beat may come before the end of an earlier one."""
@@ -129,42 +127,64 @@ def measured(rule: str, motion: Motion, *, lacking: bool = False) -> str:
     Args:
         rule: as for :func:`check`.
         motion: of two people.
-        lacking: of what is missing: how often it is done, if that is wrong, "done 1 time, not 3"; else the first that
-            holds in no frame, with what it asks for: "hands 12 cm apart, 5 cm needed".
+        lacking: of what is missing, with what is needed: "done 1 time, not 3", "hands 12 cm apart, 5 cm needed"; never
+            "" for a rule that does not hold.
 
     Raises:
         RuleError: as :func:`check`.
     """
-    least = ""
-    for node in _calls(ast.parse(rule, mode="eval").body):
-        if lacking and _name(node.func) in ("times", "exactly"):
-            mask, count = (_value(argument, motion) for argument in node.args)
-            if 0 < (seen := _times(motion, mask)) < count or (seen > count and _name(node.func) == "exactly"):
-                return f"done {seen} time{'s' * (seen != 1)}, not {count}"
-        if _name(node.func) in MEASURES:
-            held = lacking and bool(np.any(_value(node, motion)))
-            said, limit = str(_call(node, motion, MEASURES)), _limit(node, motion) if lacking and not held else ""
-            said += limit * all((unit in said) == (unit in limit) for unit in ("°", "m/s"))
-            if not held:
-                return said
-            least = least or said  # it is so, and not for long enough, or too often
-    return least
+    tree = ast.parse(rule, mode="eval").body
+    if not lacking:
+        return next(
+            filter(None, (_figure(node, motion)[0] for node in _calls(tree) if _name(node.func) in PREDICATES)), ""
+        )
+    parts = list(tree.values) if isinstance(tree, ast.BoolOp) else [tree]
+    failed = (part for part in parts if isinstance(part, ast.Call) and not _holds(part, rule, motion))
+    return next(filter(None, (_lack(part, motion) for part in failed)), "")
 
 
-def _limit(node: ast.Call, motion: Motion) -> str:
-    """The distance or angle that a predicate asks for, as ", 5 cm needed"; "" where it names none."""
-    arguments = [_value(argument, motion) for argument in node.args]
-    named = {str(keyword.arg): _value(keyword.value, motion) for keyword in node.keywords}
-    bound = inspect.signature(PREDICATES[_name(node.func)]).bind(motion, *arguments, **named)
-    bound.apply_defaults()
-    for name, value in reversed(bound.arguments.items()):
-        if name in ("gap", "metres", "over", "rise", "drop") and isinstance(value, float) and value > 0:
-            return f", {100 * value:.0f} cm needed" if value < 1 else f", {value:.1f} m needed"
-        if name == "speed" and isinstance(value, float) and value > WALK:
-            return f", {value:.1f} m/s needed"
-        if name == "degrees" and isinstance(value, (int, float)):
-            return f", {value:.0f}° needed"
-    return ""
+def _lack(node: ast.Call, motion: Motion) -> str:
+    """What is missing of a condition that does not hold."""
+    name, calls = _name(node.func), [each for each in node.args if isinstance(each, ast.Call)]
+    seen = [np.asarray(_value(each, motion)) for each in calls]
+    figure, limit = _figure(calls[0], motion)
+    if name == "never":
+        more = "more" if _name(calls[0].func) in measures.AT_MOST else "less"
+        return f"{figure or 'so for a while'}, {more}{f' than {limit}' * bool(limit)} needed"
+    for each, mask in zip(calls, seen, strict=True):
+        if not mask.any():
+            return _needed(each, motion)
+    if name in ("times", "exactly"):
+        count = _times(motion, seen[0])
+        asked = _value(node.args[1], motion)
+        return f"done {count} time{'s' * (count != 1)}, {f'not {asked}' if name == 'exactly' else f'{asked} needed'}"
+    if len(calls) > 1:
+        return "all of it is seen, but not in this order"
+    least = _value(node.args[1], motion) if len(node.args) > 1 else {"mostly": 0.6}.get(name, SHORTEST)
+    least *= motion.frames / motion.fps if name == "mostly" else 1.0
+    when = {"start": "not at the start", "end": "not at the end"}.get(name, f"{least:.1f} s needed")
+    return f"{figure} for {longest(seen[0], motion.fps):.2f} s, {when}".strip()
+
+
+def _needed(node: ast.Call, motion: Motion) -> str:
+    """The figure of a predicate that holds in no frame, and what it asks for."""
+    inner = [each for each in node.args if isinstance(each, ast.Call)]
+    if inner:
+        lacks = (each for each in inner if not np.any(_value(each, motion)))
+        return next((_needed(each, motion) for each in lacks), "seen one by one, but not at the same time")
+    figure, limit = _figure(node, motion)
+    return (
+        f"{figure}, {limit} needed" if limit else f"{figure}{', ' * bool(figure)}needed: {_call(node, motion, _ASKS)}"
+    )
+
+
+def _figure(node: ast.Call, motion: Motion) -> tuple[str, str]:
+    """As :func:`.measures.figure`."""
+    return _call(node, motion, _FIGURES)
+
+
+_FIGURES: dict[str, Callable[..., Any]] = {name: partial(measures.figure, name) for name in PREDICATES}
+_ASKS: dict[str, Callable[..., Any]] = {name: partial(measures.asks, name) for name in PREDICATES}
 
 
 def masks(rule: str) -> list[str]:

@@ -1,116 +1,101 @@
 """The figures behind predicates, in a few plain words: "hand 34 cm from the shoulder", "they stay 1.8 m apart".
 
-A measure takes what its predicates take and says how near a motion comes to them at best.
+A predicate with a limit is measured by it: the figure is the limit next to which it begins to hold in some frame, so
+that what is measured and what is needed have one unit and never disagree.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import inspect
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from .joints import Array, Motion, stretches
-from .paths import WALK, sideways
-from .poses import _lift, _wrist_speed
-from .shapes import lean_to
-from .touches import _hand_gaps, to_joints
-
-_NAMES = ("A", "B")
-_LEANS = {"any": "", "left": " to the left", "right": " to the right", "towards": " towards the other"}
+from .joints import PREDICATES, Motion
+from .paths import WALK
 
 
-def _length(metres: float | np.floating) -> str:
-    return f"{100 * metres:.0f} cm" if metres < 1 else f"{metres:.1f} m"
+def _by_name(table: dict[str, str]) -> dict[str, str]:
+    return {name: said for said, names in table.items() for name in names.split()}
 
 
-def _gap(m: Motion, joint: str) -> str:
-    """The least distance of a joint of one from the same of the other."""
-    return _length(np.linalg.norm(m.joint(0, joint) - m.joint(1, joint), axis=-1).min())
-
-
-def _gone(m: Motion, rate: Array) -> str:
-    """The longest way at a rate of 0.15 m/s or more."""
-    return _length(max((rate[i:j].sum() for i, j in stretches(rate > 0.15, m.fps)), default=0.0) / m.fps)
-
-
-def _nearer(m: Motion, who: int) -> Array:
-    """(T,) m/s towards the other."""
-    return np.sum(m.velocities[who] * m.towards(who), axis=-1)
-
-
-def _hand_from(m: Motion, who: int, whose: int, part: str, side: object) -> str:
-    hands = m.hands(who, side if isinstance(side, str) else "any")
-    return f"hand {_length(to_joints(m, hands, whose, part).min())} from the {part}"
-
-
-def _round(m: Motion, who: int) -> float:
-    """Degrees by which somebody goes around the other."""
-    line = m.roots[who] - m.roots[1 - who]
-    return float(np.ptp(np.degrees(np.unwrap(np.arctan2(line[:, 0], line[:, 1])))))
-
-
-def _rise(m: Motion, who: int) -> float:
-    """Metres that both feet are off the floor."""
-    lowest = m.pair(who, "foot")[..., 1].min(axis=0)
-    return float(lowest.max() - np.percentile(lowest, 10))
-
-
-def _hand_height(m: Motion, who: int) -> str:
-    lift = float(_lift(m, who).max())
-    return f"hand {_length(abs(lift))} {'above' if lift > 0 else 'below'} the shoulder"
-
-
-def _standing(height: float | np.floating) -> str:
-    return f"{100 * min(1.0, float(height)):.0f} % of standing height"
-
-
-_TABLE: dict[str, Callable[..., str]] = {
-    # ---- two bodies ----------------------------------------------------------------------------------
-    "hands_meet both_hands_meet": lambda m, *_, **__: f"hands {_length(_hand_gaps(m).min())} apart",
-    "hand_on both_hands_on arm_on": lambda m, who, part, side="any", *_, **__: _hand_from(m, who, 1 - who, part, side),
-    "hand_to_own": lambda m, who, part, side="any", *_, **__: _hand_from(m, who, who, part, side),
-    "hugs": lambda m: f"chests {_gap(m, 'spine3')} apart",
-    "heads_near": lambda m, *_, **__: f"heads {_gap(m, 'head')} apart",
-    "near touches": lambda m, *_, **__: f"they stay {_length(m.distance.min())} apart",
-    "apart": lambda m, *_, **__: f"they get {_length(m.distance.max())} apart",
-    "faces": lambda m, who, *_, **__: f"{_NAMES[who]} faces {m.off(who).min():.0f}° away from {_NAMES[1 - who]}",
-    "orbits": lambda m, who, *_, **__: f"{_NAMES[who]} goes {_round(m, who):.0f}° around",
-    # ---- ways ----------------------------------------------------------------------------------------
-    "walks": lambda m, who, metres=0.8, speed=WALK: (
-        f"{_NAMES[who]} "
-        + (f"reaches {m.speeds[who].max():.1f} m/s" if speed > WALK else f"goes {_gone(m, m.speeds[who])}")
-    ),
-    "goes_ahead goes_metres sidesteps steps_aside passes follows": (
-        lambda m, who, *_, **__: f"{_NAMES[who]} goes {_gone(m, m.speeds[who])}"
-    ),
-    "goes_way": lambda m, who, way, *_, **__: f"{_NAMES[who]} goes {_gone(m, sideways(m, who, way))} to the {way}",
-    "runs": lambda m, who, *_, **__: f"{_NAMES[who]} reaches {m.speeds[who].max():.1f} m/s",
-    "walks_to": lambda m, who, *_, **__: f"{_NAMES[who]} comes {_gone(m, _nearer(m, who))} nearer",
-    "walks_away": lambda m, who, *_, **__: f"{_NAMES[who]} goes {_gone(m, -_nearer(m, who))} away",
-    "backs": lambda m, who, *_, **__: (
-        f"{_NAMES[who]} goes {_gone(m, -np.sum(m.velocities[who] * m.forward[who], axis=-1))} backwards"
-    ),
-    "stays": lambda m, who, *_, **__: (
-        f"{_NAMES[who]} gets {_length(np.linalg.norm(m.roots[who] - m.roots[who][0], axis=-1).max())} away from where "
-        "they began"
-    ),
-    "turns turns_to turns_away turns_way revolves": (
-        lambda m, who, *_, **__: f"{_NAMES[who]} turns by {np.ptp(m.headings[who]):.0f}°"
-    ),
-    # ---- one body ------------------------------------------------------------------------------------
-    "low sits kneels lies falls": lambda m, who, *_, **__: f"hips down to {_standing(m.height(who).min())}",
-    "upright": lambda m, who: f"hips at {_standing(m.height(who)[-1])} at the end",
-    "leans": lambda m, who, way, *_, **__: (
-        f"trunk leans{_LEANS.get(way, f' {way}')} by {max(0.0, lean_to(m, who, way).max()):.0f}°"
-    ),
-    "bows": lambda m, who, *_, **__: f"trunk leans by {m.lean(who).max():.0f}°",
-    "ducks": lambda m, who, *_, **__: f"head goes down by {_length(m.drop(who).max())}",
-    "jumps": lambda m, who, *_, **__: f"both feet rise by {_length(_rise(m, who))}",
-    "hand_up waves hands_high hand_over_head arm_level": lambda m, who, *_, **__: _hand_height(m, who),
-    "strikes": lambda m, who, *_, **__: f"hand moves at {_wrist_speed(m, who).max():.1f} m/s",
-    "foot_up knee_high kicks": lambda m, who, *_, **__: (
-        f"foot {_length(np.ptp(m.pair(who, 'ankle')[..., 1], axis=0).max())} high"
-    ),
+_TABLES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+AT_MOST, AT_LEAST, INSTEAD = (_by_name(_TABLES[kind]) for kind in ("at_most", "at_least", "instead"))
+"""What is said of predicates by their names, and the predicates by which others are measured."""
+_WAYS = {"any": "", "left": "to the left", "right": "to the right", "towards": "towards the other"}
+"""The way of a lean in words, where it is not its own."""
+_RANGES = {
+    "degrees": (0.0, 720.0, "°"),
+    "share": (0.0, 1.5, " %"),
+    "speed": (0.0, 12.0, " m/s"),
+    "over": (-2.0, 2.0, " m"),
+    "below": (-2.0, 2.0, " m"),
 }
-MEASURES = {name: said for names, said in _TABLE.items() for name in names.split()}
-"""The measures by the name of their predicate."""
+"""The least and the largest value of a limit, by its name, and its unit."""
+_METRES = (0.0, 16.0, " m")
+"""Those of every other limit."""
+
+
+def figure(name: str, m: Motion, *values: Any, **named: Any) -> tuple[str, str]:
+    """What is measured of a predicate, and the limit that it asks for in the same unit; "" where it has none.
+
+    Args:
+        name: of the predicate.
+        m: the motion.
+        values, named: the arguments of the predicate.
+    """
+    if name in INSTEAD:
+        return figure(INSTEAD[name], m, values[0])[0], ""
+    asked = _asked(name, m, *values, **named)
+    text = (AT_MOST | AT_LEAST).get("runs" if name == "walks" and asked["speed"] > WALK else name, "")
+    limit = next((each for each in asked if f"{{{each}}}" in text and each not in ("who", "way", "part")), "")
+    if not limit:
+        return "", ""
+    low, high, unit = _RANGES.get(limit, _METRES)
+
+    def holds(value: float) -> bool:
+        return bool(np.any(PREDICATES[name](**{**asked, limit: value})))
+
+    easy, hard = (high, low) if name in AT_MOST else (low, high)
+    if not holds(easy):
+        if name in AT_MOST:
+            return "", ""  # it is not for want of this
+        hard = easy
+    for _ in range(14):
+        middle = (easy + hard) / 2
+        easy, hard = (middle, hard) if holds(middle) else (easy, middle)
+    who, way = asked.get("who", 0), asked.get("way", "")
+    said, needed = (_over(each) if limit == "over" else _said(each, unit) for each in (easy, asked[limit]))
+    if said == needed and not holds(asked[limit]):
+        said = f"just {'over' if name in AT_MOST else 'under'} {needed}"
+    words = {"who": "AB"[who], "whom": "BA"[who], "part": asked.get("part"), "way": _WAYS.get(way, way), limit: said}
+    return " ".join(text.format(**words).split()), needed
+
+
+def asks(name: str, m: Motion, *values: Any, **named: Any) -> str:
+    """What a predicate asks for, in the first words of its docstring and with its values; arguments as above."""
+    text = re.split(r"[.;:](?:\s|$)", str(PREDICATES[name].__doc__))[0]
+    for key, value in _asked(name, m, *values, **named).items():
+        plain = key in ("least", "most") or not isinstance(value, float)
+        text = text.replace(f"``{key}``", str(value) if plain else _said(value, _RANGES.get(key, _METRES)[2]))
+    return text[:1].lower() + text[1:]
+
+
+def _asked(name: str, m: Motion, *values: Any, **named: Any) -> dict[str, Any]:
+    bound = inspect.signature(PREDICATES[name]).bind(m, *values, **named)
+    bound.apply_defaults()
+    return dict(bound.arguments)
+
+
+def _over(metres: float) -> str:
+    return f"{_said(abs(metres), ' m')} {'above' if metres > 0 else 'below'}"
+
+
+def _said(value: float, unit: str) -> str:
+    """A value in a readable unit: metres below 1 as centimetres, shares as per cent."""
+    if unit == " %" or (unit == " m" and abs(value) < 0.995):
+        return f"{100 * value:.0f}{' cm' if unit == ' m' else unit}"
+    return f"{value:.{0 if unit == '°' else 1}f}{unit}"

@@ -86,12 +86,8 @@ def steps_aside(m: Motion, who: int, way: str = "any", metres: float = 0.25) -> 
 @predicate
 def goes_way(m: Motion, who: int, way: str, metres: float = 0.3) -> Mask:
     """Goes by ``metres`` or more to the "left" or "right" of where the person first faced."""
-    return _gained(m, sideways(m, who, way), metres, 0.12)
-
-
-def sideways(m: Motion, who: int, way: str) -> Array:
-    """(T,) m/s to the "left" or "right" of where somebody first faced."""
-    return {"left": 1.0, "right": -1.0}[way] * (m.velocities[who] @ m.left(who)[0])
+    left = m.velocities[who] @ m.left(who)[0]
+    return _gained(m, {"left": 1.0, "right": -1.0}[way] * left, metres, 0.12)
 
 
 @predicate

@@ -132,17 +132,12 @@ def leans(m: Motion, who: int, way: str, degrees: float = 15.0) -> Mask:
 
     "any" is any of them.
     """
-    return lean_to(m, who, way) > degrees
-
-
-def lean_to(m: Motion, who: int, way: str) -> Array:
-    """(T,) degrees by which the trunk leans in a way of :func:`leans`."""
     if way == "any":
-        return m.lean(who)
+        return m.lean(who) > degrees
     trunk = m.joint(who, "neck") - m.joint(who, "pelvis")
     ahead, left, to_other = m.forward[who], m.left(who), m.towards(who)
     axes = {"forward": ahead, "back": -ahead, "left": left, "right": -left, "towards": to_other, "away": -to_other}
-    return np.degrees(np.arctan2(flat(trunk, axes[way]), trunk[:, 1]))
+    return np.degrees(np.arctan2(flat(trunk, axes[way]), trunk[:, 1])) > degrees
 
 
 @predicate

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy  # its parts are loaded with their first use
 
-from .joints import SIDES, Array, Mask, Motion, keep, predicate
+from .joints import SIDES, Array, Mask, Motion, flat, keep, predicate
 from .paths import beside
 
 _SPINE = ("spine1", "spine2", "spine3")
@@ -19,6 +19,7 @@ _TRUNK = ("pelvis", *_SPINE, "neck", *_sides("collar", "shoulder"))
 BODY = {
     "shoulder": _sides("shoulder", "collar"),
     "back": _TRUNK[1:],
+    "torso": _TRUNK[1:],
     "trunk": _TRUNK,
     "chest": ("spine2", "spine3", *_sides("collar")),
     "head": ("head", "neck"),
@@ -96,7 +97,8 @@ def to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
 def hand_on(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_JOINT) -> Mask:
     """A hand (wrist or palm) is on a part of the other's body; "both": each hand is.
 
-    On "left foot" it is within ``gap`` metres and nearer to the left one than to the right one.
+    On "left foot" it is within ``gap`` metres and nearer to the left one than to the right one; on the "back" it is not
+    before the chest.
     """
     if side == "both":
         return hand_on(m, who, part, "left", gap) & hand_on(m, who, part, "right", gap)
@@ -104,6 +106,9 @@ def hand_on(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_J
     if part.startswith(SIDES):
         named, _, name = part.partition(" ")
         gaps[gaps >= to_joints(m, m.hands(who, side), 1 - who, f"{SIDES[1 - SIDES.index(named)]} {name}")] = np.inf
+    if part.endswith("back"):
+        ahead = flat(m.hands(who, side) - m.joint(1 - who, "spine3"), m.forward[1 - who])
+        gaps[ahead > 0.05] = np.inf
     return gaps.min(axis=0) < gap
 
 
@@ -128,10 +133,10 @@ def hand_to_own(m: Motion, who: int, part: str, side: str = "any", gap: float = 
 
 
 @predicate
-def hugs(m: Motion) -> Mask:
+def hugs(m: Motion, gap: float = 0.55) -> Mask:
     """Chest near chest, and a hand of each on the other's trunk."""
     chests = np.linalg.norm(m.joint(0, "spine3") - m.joint(1, "spine3"), axis=-1)
-    return (chests < 0.55) & hand_on(m, 0, "back", gap=0.25) & hand_on(m, 1, "back", gap=0.25)
+    return (chests < gap) & hand_on(m, 0, "torso", gap=0.25) & hand_on(m, 1, "torso", gap=0.25)
 
 
 @predicate
