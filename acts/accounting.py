@@ -166,8 +166,8 @@ def shown_caption(act: Act, entry: Entry) -> str:
     return next((text for text in alike if act.direction in text.split()), next(iter(alike), usual))
 
 
-def _slots(caption: str) -> list[str]:
-    return sorted(_SLOTS.findall(caption.replace("{a+b}", "{a}")))
+def _slots(caption: str) -> set[str]:
+    return set(_SLOTS.findall(caption.replace("{a+b}", "{a}")))
 
 
 def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:

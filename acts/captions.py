@@ -72,7 +72,7 @@ def worded(act: Act, caption: str) -> str:
     both = len(act.agents) == 2
     other = act.patient or ("b" if act.agents[0] == "a" else "a")
     caption = caption.replace("{a+b}", "{a}")
-    caption = caption if act.part else caption.replace(" on the {part}", "")
+    caption = caption if act.part else caption.replace(" on the {part}", "").replace("'s {part}", "")
     trunk = vocabulary().part(act.part or "") in closed("trunk")  # which is touched, and touches nothing
     limb = ("" if trunk else act.part) or ("foot" if _BY_FOOT.search(caption) else "hand")
     text = _VERB.sub(lambda m: ("are" if m[1] == "be" else m[1]) if both else singular(m[1]), caption)

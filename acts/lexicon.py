@@ -222,10 +222,10 @@ _WORD = re.compile(r"[a-z]+(?:'s)?")
 
 
 @lru_cache(maxsize=1)
-def _tables() -> tuple[dict[str, str], frozenset[str]]:
+def _tables() -> tuple[dict[str, str], frozenset[str], frozenset[str]]:
     tables = tomllib.loads(NOUNS.read_text(encoding="utf-8"))
     kinds = {noun: kind for kind, nouns in tables["nouns"].items() for noun in nouns}
-    return kinds, frozenset(tables["places"]["floor"])
+    return kinds, frozenset(tables["places"]["floor"]), frozenset(tables["like"]["nouns"])
 
 
 def kind_of(noun: str) -> str:
@@ -238,19 +238,23 @@ def kind_of(noun: str) -> str:
 
 def nouns_in(text: str) -> list[tuple[str, str]]:
     """The nouns of a text that have a shape, in order, each with its kind."""
-    kinds, _ = _tables()
+    kinds = _tables()[0]
     return [(word, kinds[word]) for word in map(_singular, _WORD.findall(text.lower())) if word in kinds]
 
 
 def on_floor(text: str) -> bool:
     """True if a text names the floor or something like it."""
-    _, floor = _tables()
-    return any(_singular(word) in floor for word in _WORD.findall(text.lower()))
+    return any(_singular(word) in _tables()[1] for word in _WORD.findall(text.lower()))
 
 
 def is_fixture(noun: str | None) -> bool:
     """True for a noun of what stands where it is, such as a window, so that people go to it and face it."""
     return bool(noun) and kind_of(noun or "") in FIXTURES
+
+
+def is_stand_in(noun: str) -> bool:
+    """True for a noun whose thing is drawn as another one that is only like it, such as a tray as a book."""
+    return _singular(noun) in _tables()[2]
 
 
 def thing_of(act: Act, words: str) -> tuple[str, str]:
@@ -267,7 +271,7 @@ def thing_of(act: Act, words: str) -> tuple[str, str]:
 
 
 def _singular(word: str) -> str:
-    kinds, floor = _tables()
+    kinds, floor, _ = _tables()
     word = word.removesuffix("'s")
     for end, instead in (("", ""), ("ves", "fe"), ("ies", "y"), ("es", ""), ("s", "")):
         if word.endswith(end) and (bare := word[: len(word) - len(end)] + instead) in kinds.keys() | floor:

@@ -58,7 +58,9 @@ class Go(_Shape):
     """
 
     do: Literal["go"] = "go"
-    way: Literal["to", "away", "past", "around", "behind", "along", "after", "back", "aside", "ahead", "to and fro"]
+    way: Literal[
+        "to", "away", "past", "around", "behind", "beside", "along", "after", "back", "aside", "ahead", "to and fro"
+    ]
     speed: Annotated[float, Field(gt=0, le=4)] = 1.1
     turns: Annotated[float, Field(gt=0, le=5)] = 0.5
     metres: Metres = 0.0

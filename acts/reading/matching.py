@@ -272,6 +272,7 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
     both = len(agents) > 1 or last.patient is None
     offer = declines and last.act == "offer-thing" and agents == (last.patient,)
     taken = ("hold-hands" if last.part else "take-from") if offer else last.act  # what does not happen
+    sides = _MIRRORED if event.lemma == "mirror" else {}
     return {
         "act": taken,
         "agents": agents,
@@ -282,7 +283,8 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
         "already": False,
         "times": event.times or last.times,
         "part_of": agents[0] if last.part_of in last.agents else last.part_of,
-        "side": event.side or (_MIRRORED.get(last.side or "", last.side) if event.lemma == "mirror" else last.side),
+        "side": event.side or sides.get(last.side or "", last.side),
+        "direction": sides.get(last.direction or "", last.direction),
     }
 
 
@@ -345,12 +347,16 @@ def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
         yield formed
 
 
-def is_next_to(event: Event, match: Found, known: Lexicon) -> bool:
-    """True for what is done beside the other: "lies down next to her"."""
+def next_to(event: Event, match: Found, known: Lexicon) -> Iterator[Event]:
+    """Where somebody is who gets down beside the other: that they come there first, or stand there."""
     shown = {shape.do for shape in known.entries[match[0]].stage}
-    near = (p for p, ref in event.prepositions if ref.kind == "person")
-    beside = any(p in ("beside", "alongside") or (p == "to" and "next" in event.words) for p in near)
-    return bool(match[2].patient) and "posture" in shown and beside
+    for word, ref in event.prepositions:
+        beside = word in ("beside", "alongside") or (word == "to" and "next" in event.words)
+        if beside and ref.kind == "person" and match[2].patient and "posture" in shown:
+            comes = event.bare(
+                "sidle", subject=event.subject, particles=["up"], words=["up"], prepositions=[("to", ref)]
+            )
+            yield from formations(event, ["form line"]) if event.ongoing or event.state else (comes,)
 
 
 def held(event: Event, match: Found, known: Lexicon, find: Find) -> Iterator[tuple[Event, Found]]:

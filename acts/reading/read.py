@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from acts.frames import Event, Frame, Match, Ref
-from acts.lexicon import SEATS, Entry, Lexicon, is_fixture, kind_of, lexicon
+from acts.lexicon import SEATS, Entry, Lexicon, is_fixture, kind_of, lexicon, nouns_in
 from acts.plan import MOST_ACTS, ON_TIPTOE, Act, Plan, Relation, Span, Unread, merged, other_of
-from acts.shapes import Go
+from acts.shapes import Go, Touch
 from motion import InputError
 
-from .matching import Found, completed, formations, held, is_next_to, matcher, noun_acts, of_the_last, repeated, seated
+from .matching import Found, completed, formations, held, matcher, next_to, noun_acts, of_the_last, repeated, seated
 from .parses import Parse, parses
 from .people import A_NAME, B_NAME
 from .reader import Reader
@@ -162,8 +162,14 @@ class _Planner:
         elif match is not None:
             if inner and any(self._events[i].lemma in f for f in (e.words for e in match[1].elements) for i in inner):
                 self._taken.update(inner)
-            self._add(number, event, *match)
-            self._companions(number, event, match, formed)
+                self._clauses[number] = (self._clauses[number][0], max(self._clauses[i][1] for i in (number, *inner)))
+            near = self._found(next_to(event, match, self._known))
+            comes = [each for each in near if each[0].lemma == "sidle"]
+            for coming, found in comes:
+                self._add(number, coming, *found)
+            then = Relation(kind="after", act=self._acts[-1].id) if comes else None
+            self._add(number, event, *match, beside=then)
+            self._companions(number, event, match, formed if comes else [*formed, *near])
         elif event.lemma not in closed("shows nothing") and not (inner and self._about_another(event)):
             self._not_read(number, event)
 
@@ -184,15 +190,15 @@ class _Planner:
         at_once = Relation(kind="with", act=of)
         told = {agent for act in self._acts[:-1] for agent in act.agents}
         both = len(match[2].agents) == 2
-        shown = {shape.do for shape in self._known.entries[match[0]].stage}
+        entry = self._known.entries[match[0]]
+        shown = {shape.do for shape in entry.stage}
+        if both and not entry.mutual and any(isinstance(s, Touch) and s.times and not s.fells for s in entry.stage):
+            self._one_after_the_other(to_each=True)  # "they pat each other": of a touch there is one at a time
         for other, formation in formed:
-            if formation[0] == "canon" and both and not self._known.entries[match[0]].mutual:
-                self._in_canon()
+            if formation[0] == "canon" and both and not entry.mutual:
+                self._one_after_the_other()
             elif formation[0] != match[0] and not (shown & {"go", "place"} and formation[0] == "form-line"):
                 self._add(number, other, *formation, beside=at_once)
-        if is_next_to(event, match, self._known):
-            for other, line in self._found(formations(event, ["form line"])):
-                self._add(number, other, *line, beside=at_once)
         for other, posture in held(event, match, self._known, self._matcher.find):
             self._add(number, other, *posture, beside=at_once)
         if (sits := seated(event, match, self._known, told)) is not None:
@@ -203,13 +209,14 @@ class _Planner:
             for other, done in self._found([noun])[: self._acts[-1].id == of]:
                 self._add(number, other, *done, beside=Relation(kind=kind, act=of))  # type: ignore[arg-type]
 
-    def _in_canon(self) -> None:
-        """Has the last act of both done by one after the other."""
+    def _one_after_the_other(self, *, to_each: bool = False) -> None:
+        """Has the last act of both done by one after the other, or by each to the other."""
         last = self._acts.pop()
-        self._acts.append(last.model_copy(update={"agents": ("a",)}))
-        then = last.model_copy(update={"agents": ("b",), "id": str(len(self._acts) + 1)})
-        self._acts.append(then)
-        self._beside[then.id] = Relation(kind="after", act=last.id)
+        for who, other in ("ab", "ba"):
+            whom = {"patient": other, "part_of": other if last.part else None} if to_each else {}
+            own = str(len(self._acts) + 1)
+            self._acts.append(last.model_copy(update={"agents": (who,), "id": own, **whom}))
+        self._beside[own] = Relation(kind="after", act=last.id)
 
     def _in_turn(self, number: int, event: Event) -> bool:
         """Passes "take turns", which is parsed as "keep", on to what is done in turn; False for other verbs."""
@@ -325,7 +332,7 @@ class _Planner:
             act=name,
             agents=tuple(match.agents),  # type: ignore[arg-type]
             patient=patient or None,  # type: ignore[arg-type]
-            thing=match.thing or self._named(event, name),
+            thing=match.thing or self._named(event, name, self._text[words.start : words.stop]),
             part=part.lemma if part is not None else None,
             part_of=owner,  # type: ignore[arg-type]
             part_side=part_side,  # type: ignore[arg-type]
@@ -364,13 +371,13 @@ class _Planner:
         own = [act for act in self._acts if who in act.agents]
         return bool(own) and any(shape.do == "posture" for shape in self._known.entries[own[-1].act].stage)
 
-    def _named(self, event: Event, name: str) -> str | None:
+    def _named(self, event: Event, name: str, text: str) -> str | None:
         """The thing of an act whose frame has its noun as a word, a seat, or the window before which one is done."""
         ref = event.object
         if self._known.entries[name].thing == "sits":
-            places = [place.lemma for _, place in event.prepositions if place.kind == "thing"]
-            places += [act.thing for act in self._acts[-1:] if act.thing]  # "walks to the bench and sits down"
-            return next((noun for noun in places if kind_of(noun) in SEATS), None)
+            before = "".join(act.thing or "" for act in self._acts[-1:])  # "walks to the bench and sits down"
+            found = nouns_in(f"{text} {before}")
+            return next((noun for kinds in (SEATS, ("table",)) for noun, kind in found if kind in kinds), None)
         if ref is not None and ref.kind == "thing" and self._known.entries[name].thing and kind_of(ref.lemma):
             return ref.lemma
         goals = (ref for word, ref in event.prepositions if word in closed("before goals") and ref.kind == "thing")

@@ -11,7 +11,7 @@ from acts.shapes import Gesture, Go, Hold, Lift, Shape, Strike
 
 BESIDE = frozenset(("gesture", "limb", "words"))
 """Shapes of what a person can do on their way."""
-_ARRIVES = frozenset(("to", "behind", "back", "aside"))
+_ARRIVES = frozenset(("to", "behind", "beside", "back", "aside"))
 _LASTS = frozenset(("around", "along", "after", "to and fro"))
 """Ways that go on for as long as one likes."""
 _KINDS = ("after", "with", "while", "before", "until")
@@ -41,6 +41,7 @@ def related(
     number_of = {name: number for number, name in of.items()}
     relations: dict[str, list[Relation]] = {act.id: [] for act in told}
     acts = {act.id: act for act in told}
+    ends = {relation.act: name for name, relation in beside.items() if relation.kind == "after"}  # of what is in turn
     for act in told:
         if act.id in beside:
             relations[act.id].append(beside[act.id])
@@ -48,7 +49,7 @@ def related(
         kind, above = _joint(number_of[act.id], events, of)
         if above is None or of[above] == act.id:
             continue
-        other = acts[of[above]]
+        other = acts[ends.get(of[above], of[above])]
         then, kind = kind == "then", "after" if kind == "then" else kind
         act = acts[act.id] = act.model_copy(update={"already": act.already and not then})
         if kind == "who":

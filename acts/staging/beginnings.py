@@ -93,7 +93,7 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
         return _back_to_back(upright)
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
     gap = next((ways[way].near for way in ("hold", "spar") if way in ways), gap)
-    for way in ("to", "behind"):
+    for way in ("to", "behind", "beside"):
         if way in ways:
             gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0))
     if "ahead" in ways:

@@ -15,7 +15,7 @@ from motion import FPS
 from motion.vectors import Array, wrapped
 
 from .holds import HOLDS, danced
-from .places import EASE, MOST, Standing, Track, Way2D, bearing, direction, eased, sampled, smoothed
+from .places import EASE, MOST, TURNING, Standing, Track, Way2D, bearing, direction, eased, sampled, smoothed
 from .score import Move, Way
 
 CLOSE = 0.9
@@ -199,9 +199,13 @@ def _behind(move: Move, track: Track, other: Array, faces: float, seconds: float
     if abs(sweep) > (math.pi / 3 if move.way == "behind" else 0.6 * math.pi):
         wide = min(float(np.linalg.norm(out)), WIDE)
         line[1:1] = [other + wide * direction(start + share * sweep) for share in (0.4, 0.75)]
+    if move.sits:
+        track.seats = [*track.seats, goal - SEAT * direction(faces)]
     way = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
     if way > (0.05 if move.near else 0.25):
         most = seconds if len(line) == 2 else _ROUND_BEHIND * seconds
+        if move.sits:  # they turn round there
+            most = seconds - abs(wrapped(faces - bearing(line[-1] - line[-2]))) / math.pi * TURNING
         track.walk(smoothed(np.stack(line)), _time(way, move.speed, most))
     if abs(turn := wrapped(faces - track.heading)) > 0.1:
         track.turn(turn)

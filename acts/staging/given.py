@@ -25,7 +25,7 @@ from .holds import COUPLE, hold_parts, pull_parts, twirl_parts
 from .lifts import Carrying
 from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
-from .places import EVENLY, Standing, Way2D
+from .places import AT_TABLE, EVENLY, Standing, Way2D, direction
 from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, upright
 from .postures import posture_parts, postures
 from .recordings import Performance, dancing, performance, standing_by, walking
@@ -154,14 +154,18 @@ class _Beat:
         return [person for person in (0, 1) if self.start and self.scene[person, self.start - 1, 0, 1] <= UPRIGHT]
 
     def seats(self) -> list[Array]:
-        """The places (2,) of the seats on which people sit when it begins, or sat before."""
-        scores, edges = self.story.scores, self.story.edges
-        return [
-            self.scene[person, max(edges[i] - 1, 0), 0, [0, 2]]
-            for i in range(self.window.beat + 1 if self.start else 0)
-            for person, who in enumerate("ab")
-            if at_start(scores, i)[who] == "sits"
-        ]
+        """The places (2,) of the seats on which people sit when it begins, or sat before, and of the tables at them."""
+        scores, edges, begin = self.story.scores, self.story.edges, self.story.beginning()
+        spots: list[Array] = []
+        for i in range(self.window.beat + 1):
+            for person, who in enumerate("ab"):
+                if at_start(scores, i)[who] == "sits":
+                    pose = self.scene[person, max(edges[i] - 1, 0)] if self.start else None
+                    spots.append(begin.places[person] if pose is None else pose[0, [0, 2]])
+                    angle = begin.headings[person] if pose is None else heading(pose)
+                    if any(change.at_table for score in scores[: i + 1] for change in score.changes.get(who, ())):
+                        spots.append(spots[-1] + AT_TABLE * direction(float(angle)))
+        return spots
 
     def last(self, person: int) -> Array | None:
         """A person's pose (22, 3) before it; None if it is the first."""

@@ -141,7 +141,9 @@ def direction(heading: float | Array) -> Array:
 
 # ---- tracks: the way of one person over the floor of a beat, laid out move by move --------------------
 ROUND = 0.6
-"""Metres from the middle of a seat at which people go round it."""
+"""Metres from the middle of a seat or a table at which people go round it."""
+AT_TABLE = 0.82
+"""Metres from the pelvis to the middle of a table at which somebody sits."""
 HALT = 0.3
 """Seconds of its speed that a walk takes to stop."""
 MOST = 3.2
@@ -170,7 +172,7 @@ class Track:
         frame: the first frame that is not laid out yet.
         going: (2,) unit direction of a walk side by side that they are on; zero if there was none.
         dense: frames of walks whose places are given.
-        seats: places (2,) of seats, round which walks lead.
+        seats: places (2,) of seats and tables, round which walks lead.
     """
 
     place: Array

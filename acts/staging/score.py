@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import Literal
 
 from acts import shapes
+from acts.plan import other_of
 from acts.shapes import Figure, Gesture, Jump, Limb
 
 SIDES = ("left", "right")
@@ -21,13 +22,13 @@ Way = Literal[
     "past",
     "around",
     "behind",
+    "beside",
     "along",
     "after",
     "back",
     "aside",
     "ahead",
     "to and fro",
-    "beside",
     "turn",
     "face",
     "stay",
@@ -37,10 +38,10 @@ Way = Literal[
     "spar",
     "thing",
 ]
-"""Ways over the floor, and of staying: those of :class:`acts.shapes.Go`, and a walk up ``beside`` the other; a ``turn``
+"""Ways over the floor, and of staying: those of :class:`acts.shapes.Go`; a ``turn``
 on the spot and one to ``face`` the other; somebody who stays, with their back ``averted``, or ``back to back``; two who
 go round each other in ``hold`` or ``spar``; and a way to a ``thing``."""
-_TO_SEATS = ("to", "away", "ahead", "thing", "along")
+_TO_SEATS = ("to", "beside", "away", "ahead", "thing", "along")
 """Ways at whose end people may sit down."""
 IN_PLACE = ("stay", "face", "back to back")
 """Ways that need no legs."""
@@ -95,9 +96,11 @@ class Change(shapes.Posture):
 
     Attributes:
         after: share of the beat that comes before, from 0 to 1.
+        at_table: they sit at one.
     """
 
     after: float = 0.0
+    at_table: bool = False
 
 
 class Touch(shapes.Touch):
@@ -247,6 +250,13 @@ def as_story(scores: Sequence[Score]) -> tuple[Score, ...]:
         changes = {who: listed[1:] if who in again else listed for who, listed in score.changes.items()}
         scores[i] = replace(score, changes=changes) if again else score
         known |= set(score.changes) | score.going
+    table: set[str] = set()
+    for i, score in enumerate(scores):  # who comes up to a person at a table comes to their side
+        table |= {who for who, listed in score.changes.items() if listed[0].already and listed[0].at_table}
+        comes = [move.way == "to" and other_of(move.person) in table for move in score.moves]
+        moves = (replace(m, way="beside") if side else m for m, side in zip(score.moves, comes, strict=True))
+        scores[i] = replace(score, moves=tuple(moves)) if any(comes) else score
+        table = table - score.changes.keys() | {who for who, c in score.changes.items() if c[-1].at_table}
     for i, (score, then) in enumerate(pairwise(scores)):  # a person who turns round to the other is touched from behind
         touch, turned = score.touch, {move.person for move in then.moves if move.way == "face"}
         if touch is None or touch.part not in ("shoulder", "back") or touch.person in turned:
@@ -256,7 +266,11 @@ def as_story(scores: Sequence[Score]) -> tuple[Score, ...]:
     for i, (score, then) in enumerate(pairwise(scores)):  # to sit down at the end of a way, they turn round there
         sits = [who for who, listed in then.changes.items() if listed[0].posture == "sits" and not listed[0].already]
         there = [move for move in score.moves if move.person in sits and move.way in _TO_SEATS]
-        turns = (Move(move.person, "turn" if move.way == "along" else "face", sits=True) for move in there)
+        turns = (
+            Move(move.person, "turn" if move.way == "along" else "face", sits=True)
+            for move in there
+            if move.way != "beside"
+        )
         moves = (replace(move, sits=move in there) for move in score.moves)
         scores[i] = replace(scores[i], moves=(*moves, *turns)) if there else scores[i]
     for i, score in enumerate(scores):  # a person who is down does not stand by, nor get up for a bow

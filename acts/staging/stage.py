@@ -274,6 +274,7 @@ class _Stage:
                 after=0.0 if already else after + (1 - after) * i / times,
                 passing=shape.passing,
                 gently=shape.gently and not already,
+                at_table=shape.posture == "sits" and kind_of(act.thing or "") == "table",
             )
             for i in range(times)
         ]

@@ -184,6 +184,13 @@ class ThingCourse:
 
     def _puts(self, use: Use) -> None:
         who = use.agents[0]
+        if self.holders[-1][1] == use.agents == (0, 1):  # it comes down between them
+            frame, frames = lowest(self.hands, who, use.start, use.stop).frame, self.hands.frames
+            place = self.course.places[frame] * FLAT - [0.0, self.surface.vertices[:, 1].min(), 0.0]
+            self.course.put(frame, (np.tile(place, (frames, 1)), np.tile(self.course.rotations[frame], (frames, 1, 1))))
+            self._let_hands_go(frame)
+            self._say(use, frame, on="floor")
+            return
         if not self._takes_up(use, who):
             return
         moment = lowest(self.hands, who, use.start, use.stop, self.side)

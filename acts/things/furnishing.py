@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.checking import Verdict, rules_of
-from acts.lexicon import kind_of, lexicon
+from acts.lexicon import is_stand_in, kind_of, lexicon
 from acts.plan import Act, Plan, PlanFrames
 from motion import SMPL22, Duet
 from motion.hands import MOST_GRIPS, SIDES, Grip
@@ -72,6 +72,12 @@ def furnish(duet: Duet, plans: Sequence[PlanFrames], lengths: Sequence[float] = 
     listed = [{"kind": thing.kind, "name": thing.name, "events": events} for thing, events in rows]
     manifest = {**(duet.manifest or {}), "things": listed}
     return replace(duet, things=tuple(thing for thing, _ in rows), manifest=manifest)
+
+
+def stand_ins(rows: Sequence[Row]) -> tuple[str, ...]:
+    """A sentence on the things that are drawn as others, of the rows of a manifest; none where all are as named."""
+    said = dict.fromkeys(f"the {row['name']} as a {row['kind']}" for row in rows if is_stand_in(row["name"]))
+    return (f"Drawn as something like it: {', '.join(said)}.",) if said else ()
 
 
 def _is_same(one: Thing, other: Thing) -> bool:
@@ -201,7 +207,7 @@ def judge_things(
     """The verdicts, of which those on acts with a thing that is in the scene follow from the things.
 
     A look at a thing follows from where the face points. Something is opened or closed where a part of it begins to
-    move while one of the act's agents has a hand at it.
+    move while one of the act's agents has a hand at it, and handed over where it goes from hand to hand.
 
     Args:
         verdicts: on the acts of the plan.
@@ -210,8 +216,6 @@ def judge_things(
         start, stop: frames.
         lengths: seconds of the beats into which the sentence was split, where it was.
     """
-    if not duet.things:
-        return tuple(verdicts)
     frames = {act.id: (act, first, last) for act, first, last in act_frames(plan, start, stop, lengths)}
     return tuple(_judge(each, duet, *frames[each.id]) if each.id in frames else each for each in verdicts)
 
@@ -226,6 +230,8 @@ def _judge(verdict: Verdict, duet: Duet, act: Act, first: int, last: int) -> Ver
         seconds = min(_seconds(duet, who, first, last, seen) for who in act.agents)
         return replace(verdict, done=seconds >= LEAST, measure=f"looks at it for {seconds:.1f} s")
     entry = lexicon().entries.get(act.act)
+    if entry is not None and entry.thing in ("gives", "takes") and verdict.done is not None and act.happens:
+        return _passed(verdict, duet, act, first, last)
     if verdict.done is not None or entry is None or entry.thing not in ("opens", "closes"):
         return verdict
     kind = kind_of(act.thing or "")
@@ -241,6 +247,19 @@ def _judge(verdict: Verdict, duet: Duet, act: Act, first: int, last: int) -> Ver
     palms = Hands.of(duet).palms[["ab".index(who) for who in act.agents], :, min(starts)].reshape(-1, 3)
     near = min(_away(palms, thing, min(starts)) for thing in whole)
     return replace(verdict, done=near <= AT_HAND, measure=f"hand {100 * near:.0f} cm from it as it moves")
+
+
+def _passed(verdict: Verdict, duet: Duet, act: Act, first: int, last: int) -> Verdict:
+    """The verdict on what is handed over: done where the thing goes from hand to hand, and not judged without one."""
+    rows = (duet.manifest or {}).get("things", ())
+    events = [event for row in rows for event in row["events"] if event["act"] == act.id]
+    at = next((event["at"] for event in events if "to" in event and first <= event["at"] * duet.fps < last + 9), None)
+    if at is not None:
+        return replace(verdict, done=True, measure=f"it goes from hand to hand at {at:.1f} s")
+    if why := next((event["why"] for event in events if "why" in event), ""):
+        return replace(verdict, done=False, measure=why)
+    drawn = not act.thing or any(row["name"] == act.thing for row in rows)
+    return verdict if drawn else replace(verdict, done=None, measure=f"no {act.thing} is drawn")
 
 
 def _kinds(noun: str) -> set[str]:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from acts.staging.places import AT_TABLE
 from motion import SMPL22
 from motion.metrics.sentences.joints import stretches
 from motion.smoothing import smoothstep
@@ -28,8 +29,6 @@ _BESIDE = 1.6
 """Metres between two people, at most, who share a bench."""
 _BACK = 0.06
 """Metres by which the middle of a seat lies before the pelvis."""
-_AT_TABLE = 0.62
-"""Metres from the pelvis to the middle of a table at which somebody sits."""
 
 BODIES = {"curtain": "window"}
 """Kinds that are part of another one."""
@@ -137,7 +136,7 @@ def _tables(hands: Hands, use: Use, spots: dict[int, Spot]) -> Iterator[tuple[Us
             yield use, tuple(spots), Thing.at_rest("table", mesh, middle, yaw_of(pairs[0][1]), hands.frames)
             return
     for who, (hips, ahead, _) in spots.items():
-        place = (hips + (_AT_TABLE + 0.2) * ahead) * FLAT
+        place = (hips + AT_TABLE * ahead) * FLAT
         yield use, (who,), Thing.at_rest(use.on, shape(use.on), place, yaw_of(-ahead), hands.frames)
 
 

@@ -128,17 +128,20 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
     side = act.side if act.side in ("left", "right") else ""
     place = _place(words)
     if does == "sits":
-        if act.patient and all(shape.who == "patient" for shape in lexicon().entries[act.act].stage):
+        sits = [shape for shape in lexicon().entries[act.act].stage if shape.do == "posture"]
+        if act.patient and all(shape.who == "patient" for shape in sits):
             agents = ("ab".index(act.patient),)  # whom the agent seats
+        place = place or "table" * (kind_of(act.thing or "") == "table")
         if on_floor(words) and not place:
             return None
         seats = [noun for noun in nouns_in(f"{words} {act.thing or ''}") if noun[1] in SEATS]
         name, kind = seats[0] if seats else ("chair", "")
         return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
     name, kind = thing_of(act, words)
+    struck = does == "holds" and kind == "ball" and entry is not None and entry.prop not in ("", kind)
     if does == "uses" and kind not in HELD:
         kind = ""  # "sweeps the floor" with a tool
-    if not kind and (does == "uses" or not act.thing):
+    if struck or (not kind and (does == "uses" or not act.thing)):  # who hits a ball holds the racket
         name = kind = entry.prop if entry else ""
     if does in ("throws", "kicks"):
         other = {"up": agents[0], "away": None}.get(act.direction or "", other)

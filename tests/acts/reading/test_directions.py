@@ -73,6 +73,8 @@ def test_a_text_is_read_alike_in_every_process() -> None:
 def test_who_mirrors_both_arms_raises_both() -> None:
     first, then = read("A raises both arms and B mirrors it.").acts
     assert (first.side, then.side, then.agents) == ("both", "both", ("b",))
+    then = read("He steps to the left and she mirrors him.").acts[-1]
+    assert (then.side, then.direction) == ("right", "right"), "a mirror goes to the same side of the room"
 
 
 @pytest.mark.parametrize(

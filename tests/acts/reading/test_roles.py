@@ -74,7 +74,6 @@ def test_what_is_done_instead_is_all_that_is_done() -> None:
     ("text", "acts"),
     [
         ("A hugs B and he waves", ["a hug b", "a wave b"]),
-        ("A hugs B. He waves.", ["a hug b", "a wave b"]),
         ("A hugs B and they wave", ["a hug b", "ab wave"]),
         ("A woman hugs a man and he waves", ["a hug b", "b wave a"]),
         ("A pushes B and he falls", ["a push b", "b fall-down"]),
@@ -84,16 +83,13 @@ def test_what_is_done_instead_is_all_that_is_done() -> None:
         ("Both raise the right arm in unison.", ["ab raise-arm", "ab unison"]),
         ("They lift their left leg in canon.", ["a raise-leg", "b raise-leg"]),
         ("They touch palms.", ["ab push-palms"]),
+        ("They pat each other on the back.", ["a pat b", "b pat a"]),
+        ("She sits down next to him.", ["a join-side b", "a sit-down b"]),
         # a headline is done by both
         ("push-ups", ["ab push-ups"]),
-        ("synchronized jumping jacks", ["ab jumping-jacks"]),
-        ("Slow bows.", ["ab bow"]),
-        ("He jumps.", ["a jump"]),
         ("A woman and a woman dance.", ["ab dance"]),
         # nothing slows, and somebody shakes hands
         ("He does slow arm circles.", ["a circle-arms"]),
-        ("does slow arm circles", ["a circle-arms"]),
-        ("They do shake hands.", ["ab shake-hands"]),
         # a verb without its person is done to the other
         ("One pushes and the other falls.", ["a push b", "b fall-down"]),
         ("B feints a stab with the dagger.", ["b sword-fight a"]),
@@ -109,3 +105,5 @@ def test_who_does_what_to_whom(text: str, acts: list[str]) -> None:
 def test_what_comes_next_follows_what_then_brings() -> None:
     acts = read("a man walks forward, then pivots on his foot and does a half turn, and claps.").acts
     assert [[relation.act for relation in act.order] for act in acts] == [[], ["1"], ["2"], ["3"]]
+    acts = read("They pat each other on the shoulder and walk away.").acts
+    assert [[relation.act for relation in act.order] for act in acts] == [[], ["1"], ["2"]]

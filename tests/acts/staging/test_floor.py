@@ -9,7 +9,7 @@ from acts import read
 from acts.staging.beginnings import REACH, starting
 from acts.staging.floor import ABREAST, ACROSS, BEHIND, CLOSE, FARTHEST, LINKED, SEAT, plan
 from acts.staging.holds import HOLDS
-from acts.staging.places import EVENLY, EVERY, MOST, Standing, Way2D
+from acts.staging.places import AT_TABLE, EVENLY, EVERY, MOST, Standing, Way2D
 from acts.staging.score import Move
 from acts.staging.stage import scores_of
 from motion import FPS
@@ -254,6 +254,15 @@ def test_who_comes_up_beside_the_other_walks_straight_there_and_looks_the_same_w
     assert abs(found.places[-1, 1] - b[1]) < 0.05 and abs(abs(found.places[-1, 0]) - 0.5) < 0.05
     assert math.cos(found.headings[-1] - FACING.headings[1]) > 0.99
     assert np.linalg.norm(np.diff(found.places, axis=0), axis=1).sum() < 1.1 * np.linalg.norm(found.places[-1])
+
+
+def test_who_comes_up_to_a_person_at_a_table_walks_round_it_to_their_side() -> None:
+    then = scores_of(read("A sits at the table. B walks up to A.").beats())[-1].moves
+    comes = next(move for move in then if move.person == "b")
+    table = np.array([0.0, AT_TABLE])
+    stand = Standing(np.array([[0.0, 0.0], [0.0, 3.0]]), np.array([0.0, math.pi]))
+    way = plan((comes,), stand, 150, seats=[table])[0]
+    assert comes.way == "beside" and np.linalg.norm(way.places - table, axis=1).min() > 0.55
 
 
 def test_who_runs_away_gets_up_to_the_speed_of_a_run() -> None:

@@ -14,7 +14,7 @@ from motion import SMPL22, Duet
 from motion.metrics.sentences.joints import Motion
 from motion.things import Thing
 
-from .furnishing import FPS, FRAMES, put_hand, sitting, standing
+from .furnishing import FPS, FRAMES, put_hand, reaching, sitting, standing
 
 HALF = FRAMES // 2
 
@@ -175,6 +175,12 @@ def test_a_look_at_a_window_is_judged_by_the_face():
     turned[0] = turned[0] * [-1, 1, -1]
     away = replace(Duet.from_positions(turned, fps=FPS), things=duet.things)
     assert verdict(sentence, away) == (False, "looks at it for 0.0 s")
+
+
+def test_what_is_handed_over_is_judged_by_the_thing():
+    found = verdict("A gives B a flower.", furnished("A gives B a flower.", reaching())[1])
+    assert found == (True, "it goes from hand to hand at 1.8 s")
+    assert verdict("A gives B a cheque.", furnished("A gives B a cheque.")[1]) == (None, "no cheque is drawn")
 
 
 def test_a_look_at_what_is_not_there_stays_unjudged():

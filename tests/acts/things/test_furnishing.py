@@ -179,6 +179,9 @@ def test_two_carry_a_thing_between_their_hands():
     assert np.abs(table.places - middle)[:, [0, 2]].max() < 0.05
     across = table.rotations[60] @ [1, 0, 0]
     assert abs(across[2]) > 0.99, "it lies along the line between them"
+    put = act("put-down-thing", "ab", id="2", thing="box", order=({"kind": "after", "act": "1"},))
+    (box,) = things_of(people, act("carry-thing", "ab", thing="box"), put)
+    assert abs(box.at(FRAMES - 1)[:, 1].min()) < 0.01 and abs((box.rotations[-1] @ [1, 0, 0])[2]) > 0.99
 
 
 def test_a_beat_has_its_own_frames():
