@@ -40,8 +40,9 @@ export function pin({ person, seconds }, index, total) {
 /** Seconds over the line. */
 export function drawRuler(ruler, total) {
   ruler.replaceChildren();
-  const step = total > 60 ? 5 : total > 20 ? 2 : 1;
-  for (let second = 0; second <= total; second += step) {
+  const wide = (ruler.clientWidth || 600) / total; // pixels a second
+  const step = [1, 2, 5].find((seconds) => seconds * wide > 24) ?? 10;
+  for (let second = 0; (total - second) * wide > 20; second += step) {
     const mark = node("span", "", String(second));
     mark.style.left = `${(100 * second) / total}%`;
     ruler.append(mark);

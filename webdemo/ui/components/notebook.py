@@ -22,7 +22,7 @@ STEP = 60
 """Runs that are shown at first, and how many more at a time."""
 MOST_SHOWN = 500
 UNKNOWN = "The notebook sent something unknown: reload the page."
-_MARKS = {"running": "⏳ running", "failed": "✕ failed", "cancelled": "✕ cancelled", "interrupted": "✕ interrupted"}
+_MARKS = {"running": "… running", "failed": "✕ failed", "cancelled": "✕ cancelled", "interrupted": "✕ interrupted"}
 
 
 class SentSearch(Sent):
