@@ -37,13 +37,11 @@ def check_entry(name: str, entry: Entry, folders: tuple[Path, ...] = ()) -> Iter
     where = f"{entry.group}.toml, [{name}]"
     if entry.alone and entry.alone not in lexicon(folders).entries:
         yield f"{where}: alone = “{entry.alone}” is not an act."
-    for sentence in entry.reads if entry.shown else ():
-        plan = read(sentence, folders)
-        read_acts = [act.act for act in plan.acts if act.happens]
-        if name not in read_acts:
-            yield f"{where}: “{sentence}” is not read as {name} but as {', '.join(read_acts) or 'nothing'}."
-    for sentence in () if entry.shown else entry.reads:
-        if acts := [act.act for act in read(sentence, folders).acts]:
+    for sentence in entry.reads:
+        acts = [act.act for act in read(sentence, folders).acts if act.happens or not entry.shown]
+        if entry.shown and name not in acts:
+            yield f"{where}: “{sentence}” is not read as {name} but as {', '.join(acts) or 'nothing'}."
+        elif acts and not entry.shown:
             yield f"{where}: “{sentence}” is read as {', '.join(acts)}, and nothing of it can be shown."
     for sentence in entry.ignores:
         if any(act.act == name and act.happens for act in read(sentence, folders).acts):

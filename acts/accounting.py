@@ -57,11 +57,6 @@ class Account(NamedTuple):
     others: Mapping[str, str] = {}
 
 
-def unread_words(plan: Plan) -> tuple[str, ...]:
-    """The stretches of a plan's sentence that are in no act, in its order, as they were written."""
-    return account(plan).unread
-
-
 def account(plan: Plan) -> Account:
     """All that the acts of a plan leave out of its sentence.
 
@@ -184,7 +179,7 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
     about = lemma in closed("states") or any(lemma in words.verbs[kind] for kind in _KINDS)
     if token.pos_ in ("VERB", "AUX") and (about or seems(token)):
         return False
-    if token.dep_ in ("prt", "aux", "auxpass", "neg", "mark"):
+    if token.dep_ in ("aux", "auxpass", "neg", "mark"):
         return False
     named = {words.directions.get(child.lower_) for child in token.children}
     if lemma == "side" and not closed("turns").isdisjoint(named):  # "to the left side"
@@ -212,10 +207,10 @@ def _read_by(token: Token, start: int, stop: int, plan: Plan, known: Lexicon, pa
         entry, own = known.entries.get(act.act), act.words
         near = own is None or any(own.start < span.stop and span.start < own.stop for span in around)
         if entry is not None and near:
-            if _is_said(token, act, entry, parsed):
+            found_by = _is_read(token, act, entry, parsed)
+            if _is_said(token, act, entry, parsed) or (found_by and token.dep_ == "prt"):
                 return ""
-            if reader is None and _is_read(token, act, entry, parsed):
-                reader = act.id
+            reader = act.id if found_by and reader is None else reader
     return reader
 
 

@@ -230,10 +230,7 @@ def _tables() -> tuple[dict[str, str], frozenset[str], frozenset[str]]:
 
 def kind_of(noun: str) -> str:
     """The kind of thing that a noun names, such as "cup" for "a mug" or "mugs"; "" if it has no shape."""
-    for word, kind in reversed(nouns_in(noun)):  # "paper bag" is a bag
-        if word:
-            return kind
-    return ""
+    return next((kind for _, kind in reversed(nouns_in(noun))), "")  # "paper bag" is a bag
 
 
 def nouns_in(text: str) -> list[tuple[str, str]]:

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Set
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
+from acts.lexicon import Lexicon
 
 from . import wordnet
 from .people import Cast, states_of
+from .spelling import deeds
 from .subjects import reference
-from .syntax import adverb_of, has, is_adverb, is_kept, taken_away
+from .syntax import adverb_of, has, hung_on, is_adverb, is_kept
 from .vocabulary import closed, is_act, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Token
 
+_SMALL = frozenset(("ccomp", "xcomp", "advcl", "oprd"))
 _MODIFIERS = frozenset(("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound"))
 
 
@@ -25,14 +29,14 @@ class Arguments:
 
     Args:
         cast: the people of the text so far.
-        verbs: lemmas of the lexicon's verbs.
+        known: the lexicon.
         postures: prepositions, by token, of phrases that say how a part of the body is held.
     """
 
-    def __init__(self, cast: Cast, verbs: frozenset[str], postures: Set[int] = frozenset()) -> None:
+    def __init__(self, cast: Cast, known: Lexicon, postures: Set[int] = frozenset()) -> None:
         self.cast = cast
         self._postures = postures
-        self._verbs = verbs
+        self._verbs, self._deeds = known.frames.keys(), deeds(known)
         self._words = vocabulary()
         self.seen: set[int] = set()
         """Tokens that have been taken up."""
@@ -42,10 +46,7 @@ class Arguments:
         subject = event.subject
         who = subject.who if subject is not None and subject.kind == "person" else ""
         agent: Ref | None = None
-        for child in (*token.children, *taken_away(token)):
-            before = child.left_edge.i - 1
-            if before > token.i and child.head == token and child in taken_away(token.doc[before]):
-                continue
+        for child in hung_on(token):
             if subject is not None and self.cast.seen.get(child.i) is subject:  # "…, said the witch"
                 continue
             if child.i in self._postures and child.dep_ in ("prt", "advmod"):  # "stands with shoulders up"
@@ -63,10 +64,6 @@ class Arguments:
                 event.prepositions.append((way, self._argument(child, who, event)))
             elif child.dep_ in ("dobj", "obj") and self._is_measure(child, event):  # "walk a few steps"
                 self._measured(child, who, event)
-            elif self._is_path(child, event):  # "walks a circle around her"
-                event.prepositions.append(("in", self._argument(child, who, event)))
-                for phrase in (c for c in child.children if c.dep_ == "prep"):
-                    self._preposition(phrase, who, event)
             elif child.dep_ in ("dobj", "obj"):
                 self._object(child, who, event)
             elif child.dep_ in ("dative", "iobj") and child.pos_ != "ADP":
@@ -78,12 +75,15 @@ class Arguments:
                     agent = None
             elif child.dep_ in ("prep", "dative") or (child.dep_ == "prt" and has(child, "pobj")):
                 self._preposition(child, who, event)
-            elif child.dep_ in ("ccomp", "xcomp", "advcl", "oprd") and child.pos_ in ("ADP", "ADV"):
-                for noun in child.children:  # "lifts the second person up", where "up" became a clause
+            elif child.dep_ in _SMALL and (child.pos_ in ("ADP", "ADV") or (child.pos_ == "ADJ" and child.i > token.i)):
+                for noun in child.children:  # "lifts the second person up" and "shakes him awake", as a clause
                     if noun.dep_ in ("nsubj", "pobj") and event.object is None:
                         event.object = self._argument(noun, who, event)
-                event.words.append(child.lower_)
-                event.particles.append(child.lower_)
+                if child.pos_ == "ADJ":
+                    self._modifier(child, event)
+                else:
+                    event.words.append(child.lower_)
+                    event.particles.append(child.lower_)
             elif is_kept(child):
                 event.words.append(child.lower_)
             elif (
@@ -114,14 +114,12 @@ class Arguments:
         return (lemma in closed("lengths") or lasts) and event.lemma not in self._words.verbs["light"]
 
     def _way(self, noun: Token, event: Event) -> str:
-        """The particle of who goes somewhere, which is a preposition before a thing; "" for other verbs."""
+        """The preposition of a way: "walks down a ramp", "walks (in) a circle around her"; "" for other nouns."""
         goes = event.lemma in self._words.verbs["goes"] and not self._words.part(noun.lemma_.lower())
         before = noun.doc[max(noun.left_edge.i - 1, 0)]
-        return before.lower_ if goes and before.dep_ in ("prt", "advmod") and before.lower_ in closed("along") else ""
-
-    def _is_path(self, noun: Token, event: Event) -> bool:
-        goes = event.lemma in self._words.verbs["goes"]
-        return goes and noun.dep_ in ("dobj", "obj", "npadvmod") and noun.lemma_.lower() in closed("paths")
+        if goes and before.dep_ in ("prt", "advmod") and before.lower_ in closed("along"):
+            return before.lower_
+        return "in" if goes and noun.lemma_.lower() in closed("paths") else ""
 
     def _object(self, token: Token, who: str, event: Event) -> None:
         """Takes up an object; of two, as in "hands the knight his sword", the person is the receiver."""
@@ -270,15 +268,12 @@ class Arguments:
 
     def _amount(self, noun: Token, otherwise: float = 1.0) -> float:
         """The number that stands with a noun, and another where none does."""
-        for child in sorted(noun.children, key=lambda each: each.tag_ == "DT"):  # "a few steps" are not one
-            if child.lower_ in self._words.numbers:
-                return float(self._words.numbers[child.lower_])
-            if child.like_num:
-                try:
-                    return float(child.text.replace(",", "."))
-                except ValueError:
-                    continue
-        return otherwise
+        children = sorted(noun.children, key=lambda each: each.tag_ == "DT")  # "a few steps" are not one
+        return next((value for child in children if (value := self._number(child)) is not None), otherwise)
+
+    def _number(self, word: Token) -> float | None:
+        known, text = self._words.numbers.get(word.lower_), word.text.replace(",", ".")
+        return float(text) if known is None and re.fullmatch(r"\d{1,3}(\.\d+)?", text) else known
 
     def _is_length(self, noun: Token) -> bool:
         """True for a unit of length; feet are one behind a number and a verb, and not where one stands on them."""
@@ -287,9 +282,7 @@ class Arguments:
         return lemma in self._words.metres and (measured or not self._words.part(lemma))
 
     def _count(self, number: Token, noun: Token, event: Event) -> None:
-        value = self._words.numbers.get(number.lower_)
-        if value is None and number.text.isdecimal() and len(number.text) < 4:
-            value = int(number.text)
+        value = self._number(number)
         lemma = noun.lemma_.lower()
         if value is None or self._words.is_person(lemma) or lemma == "degree" or number.lower_ in ("a", "an"):
             return
@@ -297,9 +290,9 @@ class Arguments:
             return
         if self._is_length(noun):
             event.distance = value * self._words.metres[lemma]
-            event.times = value if lemma in ("step", "pace") else event.times
+            event.times = int(value) if lemma in ("step", "pace") else event.times
         elif not self._words.part(lemma) and value <= 100:
-            event.times = max(value, 1)
+            event.times = max(int(value), 1)
 
     def _modifier(self, token: Token, event: Event) -> None:
         self.seen.add(token.i)
@@ -366,6 +359,8 @@ class Arguments:
                     return
         if event.lemma not in self._words.verbs["light"] or noun is None or noun.kind != "thing" or noun.place:
             return
+        if event.lemma in closed("shows") and noun.lemma in self._deeds:  # "shows her a handstand": does one
+            event.lemma, event.dative = "do", None
         if noun.lemma not in self._verbs or noun.lemma in ("step", "hand") or not is_act(noun.lemma):
             return
         if wordnet.usual_kind(noun.lemma) == "consumption" and noun.lemma not in self._words.verbs["nouns"]:

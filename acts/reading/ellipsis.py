@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from acts.frames import PREPOSITIONS
 
-from .people import A_NAME, B_NAME
+from .people import is_somebody
 from .syntax import has, is_adverb
 from .vocabulary import closed, vocabulary
 
@@ -51,7 +51,7 @@ class Ellipsis:
         """The verb to supply before the word ``i``; "" for none. Asked for each word in order."""
         if self._lower(i - 1) in ("", ".", "!", "?", ";"):
             self._last = ""
-        verb = self._listed_side(i) or self._deed(i)
+        verb = self._listed_side(i) or self._deed(i) or self._being(i)
         if verb:
             self._last, self._behind = verb.partition(" ")[0], i
         else:
@@ -66,6 +66,21 @@ class Ellipsis:
     def has_acted(self) -> bool:
         """True if the sentence has a verb before the word that was asked for last."""
         return bool(self._last)
+
+    def _being(self, i: int) -> str:
+        """The verb of "two kids (are) playing, one falls", which the parser takes for one clause."""
+        noun, ends, at = self._lower(i - 1), ("", ".", "!", "?", ";"), i
+        if self._last or self._ending(self._lower(i)) != "ing" or not is_somebody(noun):
+            return ""
+        while (word := self._lower(at)) not in ends and (self._ending(word) != "s" or self._words.named_part(word)):
+            at += 1
+        first = at - 1
+        while self._lower(first - 1) in closed("determiners"):
+            first -= 1
+        own = word not in ends and is_somebody(self._lower(at - 1)) and self._lower(first - 1) in (",", "and")
+        if not own or {"is", "are"} & {self._lower(k) for k in range(i - _LONGEST, i)}:
+            return ""
+        return "are" if noun.endswith("s") or noun in self._words.both else "is"
 
     def _deed(self, i: int) -> str:
         """The verb that a noun of a deed lacks: "(do) two hops, then (do) a bow"."""
@@ -103,8 +118,7 @@ class Ellipsis:
             return False
         *before, noun = [self._lower(k) for k in range(i, at)]
         one = noun.removesuffix("s")
-        named = any(word in (A_NAME.lower(), B_NAME.lower()) or word.endswith("s") for word in before)
-        people = named or any(map(self._words.is_person, (*before, one)))
+        people = any(word.endswith("s") for word in before) or any(map(is_somebody, (*before, one)))
         alone = noun in self._forms and not before  # "jumps" is a verb
         alone = alone or any(self._ending(word) in ("", "s") for word in before)  # "do jumps"
         return noun != one and not people and not alone and self._is_deed(one)

@@ -332,7 +332,10 @@ def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
         names = [name for name in names if name == "keep apart"]
     for name in dict.fromkeys(names):
         verb, _, noun = name.partition(" ")
-        verb = event.lemma if event.lemma in _OWN.get(noun, ()) else verb
+        own = event.lemma in _OWN.get(noun, ())
+        verb = event.lemma if own else verb
+        if noun == "unison" and not own and event.lemma in vocabulary().verbs["goes"]:
+            noun = "step"
         ongoing = event.ongoing and verb == event.lemma
         formed = Event(verb, who, first=event.first, last=event.last, ongoing=ongoing)
         formed.distance = event.distance if noun == "apart" else None

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from . import wordnet
-from .people import A_NAME, B_NAME
-from .spelling import Speller, others
+from .people import is_somebody
+from .spelling import Speller, deeds_done, others, verbs_taken_for_nouns
 from .syntax import has, parse
-from .vocabulary import closed, vocabulary
+from .vocabulary import vocabulary
 from .wording import Text, prepared
 
 if TYPE_CHECKING:
@@ -88,14 +88,12 @@ def _stopped(text: Text, speller: Speller) -> Parse:
 
 def _with_verbs(text: Text, speller: Speller) -> Parse:
     parsed = Parse(text, parse(text.parsed))
-    changes = speller.verbs_found(parsed.doc)
+    changes = verbs_taken_for_nouns(parsed.doc, speller.forms) | deeds_done(parsed.doc, speller.is_deed)
     return parsed.changed(changes) if changes else parsed
 
 
 # ---- missing stops -------------------------------------------------------------------------------------
 _FINITE = frozenset(("VBZ", "VBD", "VBP"))
-_WITHIN = frozenset(("det", "amod", "nummod", "poss", "compound", "nmod", "case", "predet"))
-"""Relations of the words of a noun phrase to its head."""
 _BELOW = frozenset(("ccomp", "acl", "csubj", "pcomp"))
 """Relations of clauses that follow a noun or a verb without a word between."""
 _LINKS = frozenset(("SCONJ", "CCONJ", "PUNCT", "PART", "AUX"))
@@ -126,17 +124,17 @@ def breaks(doc: Doc, lemmas: Mapping[int, str]) -> Iterator[Token]:
                 and not below
                 and (noun := _subject_behind(token, before, lemmas)) is not None
             ):
-                yield _first(noun)
+                yield noun.left_edge
             before = token
 
 
 def _joins_person(conjunction: Token) -> bool:
     """True where a thing is joined to a person who acts: "A holds the ladder and B climbs it"."""
     thing, doc = conjunction.head, conjunction.doc
-    if thing.pos_ != "NOUN" or thing.i > conjunction.i or _is_person(thing):
+    if thing.pos_ != "NOUN" or thing.i > conjunction.i or is_somebody(thing.lemma_.lower()):
         return False
     person = next((c for c in thing.children if c.dep_ == "conj" and c.i > conjunction.i), None)
-    if person is None or not _is_person(person):
+    if person is None or not is_somebody(person.lemma_.lower()):
         return False
     behind = doc[person.right_edge.i + 1] if person.right_edge.i + 1 < len(doc) else person
     return (behind.tag_ in _FINITE and behind.pos_ == "VERB") or any(
@@ -144,17 +142,12 @@ def _joins_person(conjunction: Token) -> bool:
     )
 
 
-def _is_person(noun: Token) -> bool:
-    named = noun.text in (A_NAME, B_NAME) or noun.lower_ in {*closed("ordinals"), "one"}
-    return named or vocabulary().is_person(noun.lemma_.lower())
-
-
 def _subject_behind(verb: Token, before: Token, lemmas: Mapping[int, str]) -> Token | None:
     """A verb's subject, where it directly follows the clause of the verb ``before``."""
     subject = next((c for c in verb.children if c.dep_ == "nsubj" and c.i < verb.i), None)
     if subject is None:
         return _taken_along(verb, before)
-    first = _first(subject)
+    first = subject.left_edge
     if first.i <= before.i:
         return None
     last = first.nbor(-1)
@@ -185,12 +178,4 @@ def _taken_along(verb: Token, before: Token) -> Token | None:
         return None
     if noun.dep_ not in ("dobj", "pobj", "conj", "appos", "attr", "dep", "npadvmod", "dative"):
         return None
-    return noun if _is_person(noun) else None
-
-
-def _first(noun: Token) -> Token:
-    """The first word of a noun phrase."""
-    at = noun.i
-    while at > 0 and noun.doc[at - 1].dep_ in _WITHIN and noun.doc[at - 1].head in (noun, noun.doc[at]):
-        at -= 1
-    return noun.doc[at]
+    return noun if is_somebody(noun.lemma_.lower()) else None

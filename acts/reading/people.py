@@ -86,11 +86,11 @@ class Cast:
         if self.alone and (text in PRONOUN_SEX or text in closed("they")):
             return self._as("a", text)
         if text in PRONOUN_SEX:
-            return self._pronoun(PRONOUN_SEX[text], subject)
+            return self._pronoun(PRONOUN_SEX[text], subject, _meets_other(token))
         if text in ("i", "me", "myself", "you", "yourself"):
             return self._named("i" if text in ("i", "me", "myself") else "you")
         if text in closed("they"):
-            return self._they(text, subject)
+            return self._other(subject) if len(subject) == 1 and text in ("them", "us") else "ab"
         figure = (
             self.alone and token.dep_ == "nsubj" and bool(closed("neuter") & set(self._known.get("a", _Known()).words))
         )
@@ -221,7 +221,7 @@ class Cast:
         known.sex = known.sex or self._words.sex(lemma)
         return self._as(who, "other")
 
-    def _pronoun(self, sex: str, subject: str) -> str:
+    def _pronoun(self, sex: str, subject: str, meets: bool = False) -> str:
         others = [who for who in "ab" if who not in (subject, self._has("i"), self._has("you"))]
         others = others or [who for who in "ab" if who != subject]
         fits = [who for who in others if who in self._known and self._known[who].sex == sex]
@@ -232,16 +232,12 @@ class Cast:
             known = [who for who in open_ if who in self._known]
             likely = self.focus or self.last
             who = likely if likely in known else (known or open_)[0]
+            who = other_of(who) if meets and len(known) == 1 < len(open_) else who
             self._known.setdefault(who, _Known()).sex = sex
         else:
             who = (other_of(subject) or "a") if subject else self.last or "a"
         self.last = who
         return who
-
-    def _they(self, text: str, subject: str) -> str:
-        if len(subject) == 1 and text in ("them", "us"):
-            return self._other(subject)
-        return "ab"
 
     def address(self, who: str) -> None:
         """Says that an order is given to this person."""
@@ -296,9 +292,7 @@ class Cast:
             others = self._known.get(other, _Known()).sex
             if own == sex and others != sex:
                 return subject
-            if own and own != sex:
-                return other
-            if not own and others == sex:
+            if (own and own != sex) or (not own and others == sex):
                 return other
             return ""
         owner = next((who for who in "ab" if who in self._known and self._known[who].sex == sex), "")
@@ -312,6 +306,19 @@ def _is_who(noun: Token) -> bool:
     return any(c.lower_ == "who" for clause in clauses for c in clause.children)
 
 
+def is_somebody(word: str) -> bool:
+    """True for a word that stands for one of the two people, or for both: "he", "kids", "other"."""
+    named = closed("nominatives") | closed("others") | vocabulary().both | {A_NAME.lower(), B_NAME.lower()}
+    return word in named | ANYONE or any(map(vocabulary().is_person, (word, word.removesuffix("s"))))
+
+
+def _meets_other(pronoun: Token) -> bool:
+    """True for who does something to one of the other sex, and did not act before: "a thief runs, she chases him"."""
+    beside = [t for c in pronoun.head.children for t in (c, *c.children) if t.dep_ in ("dobj", "dative", "pobj")]
+    other = any(PRONOUN_SEX.get(t.lower_, "") not in ("", PRONOUN_SEX[pronoun.lower_]) for t in beside)
+    return pronoun.dep_ == "nsubj" and not pronoun.is_sent_start and other
+
+
 def begins_clause(pronoun: Token) -> bool:
     """True for a subject that the parser joined to the object before: "hugs Beth and he waves"."""
     joined = pronoun.dep_ == "conj" and pronoun.head.dep_ in ("dobj", "dative", "pobj")
@@ -319,8 +326,9 @@ def begins_clause(pronoun: Token) -> bool:
 
 
 def states_of(noun: Token) -> Iterator[tuple[Token, str]]:
-    """The phrases of place or posture that hang on a noun or on its adjective, with their verbs: "a man in a chair"."""
+    """The words of place or posture on a noun or its adjective, with their verbs: "a man in a chair"."""
     words = vocabulary()
+    yield from ((c, verb) for c in noun.children if c.dep_ == "amod" and (verb := words.state("-", c.lower_)))
     within = [noun, *(c for c in noun.children if c.dep_ in ("amod", "acl", "appos") and c.pos_ == "ADJ")]
     for phrase in (c for token in within for c in token.children if c.dep_ == "prep"):
         for place in phrase.children:

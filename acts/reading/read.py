@@ -45,7 +45,7 @@ def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
         return Plan(sentence=text, notes=("Nothing is said: write what the two people do.",))
     if (foreign := other_language(text)) is not None:
         return Plan(sentence=text, unread=(Unread(words=Span(start=0, stop=len(text)), why=foreign),), notes=(foreign,))
-    attempts = sorted(_attempts(text, lexicon(folders)), key=lambda attempt: attempt[0])
+    attempts = sorted(_attempts(text, lexicon(folders)), key=lambda attempt: (attempt[0], -len(attempt[1].acts)))
     cost, plan = attempts[0]
     others = [other for its_cost, other in attempts[1:] if its_cost <= cost + _DOUBT]
     return plan.model_copy(update={"doubts": tuple(_doubts(plan, others))[:8]}) if others else plan
@@ -151,8 +151,10 @@ class _Planner:
                     break
         formed = self._found(formations(event, self._formations(number)))
         vague = match is None or event.lemma in vocabulary().verbs["vague"] | vocabulary().verbs["begins"]
-        if vague and not (match is not None and inner) and (noun := self._noun(event, match)) is not None:
-            event, match = noun
+        rest = range(len(event.prepositions)) if match is None else match[2].rest
+        nouns = noun_acts(event, self._known, rest) if vague and (match is None or not inner) else ()
+        if named := self._found(other for _, other in nouns):  # "answers with a bow"
+            event, match = named[0]
         elif formed and (
             vague or event.lemma in closed("shows nothing") | closed("stands") or formed[0][0].lemma == event.lemma
         ):
@@ -177,12 +179,6 @@ class _Planner:
         """The events that mean an act, with it."""
         each = ((event, self._matcher.find(event)) for event in events)
         return [(event, match) for event, match in each if match is not None]
-
-    def _noun(self, event: Event, match: Found | None) -> tuple[Event, Found] | None:
-        """The act that a noun beside a verb stands for, where the verb itself says little: "answers with a bow"."""
-        rest = range(len(event.prepositions)) if match is None else match[2].rest
-        nouns = self._found(other for _, other in noun_acts(event, self._known, rest))
-        return nouns[0] if nouns else None
 
     def _companions(self, number: int, event: Event, match: Found, formed: Sequence[tuple[Event, Found]]) -> None:
         """Adds the acts that the words beside a verb name."""
@@ -267,7 +263,7 @@ class _Planner:
 
     def _about_another(self, event: Event) -> bool:
         verbs = vocabulary().verbs
-        return any(event.lemma in verbs[k] for k in verbs if k not in ("light", "sees", "seems"))
+        return any(event.lemma in verbs[k] for k in verbs if k not in ("light", "sees", "seems", "nouns", "held"))
 
     def _span(self, number: int) -> Span:
         start, stop = self._prepared.span(*self._clauses[number])

@@ -38,16 +38,16 @@ class Reader:
         self.doc = doc
         self.cast = Cast()
         self.cast.alone = names_one(doc)
-        self.events: list[Event] = []
         self._absolutes = {absolute.preposition.i: absolute for absolute in absolutes(doc)}
         held = {token.i for absolute in self._absolutes.values() for token in (absolute.state, absolute.part)}
         placed = {phrase.i for absolute in self._absolutes.values() for phrase in absolute.placed()}
         self._tree = ClauseTree(doc, verbs, lemmas, forms, held)
         self._subjects = Subjects(self._tree, self.cast, self._event_of)
-        self._arguments = Arguments(self.cast, verbs, held | self._absolutes.keys() | placed)
+        self._arguments = Arguments(self.cast, known, held | self._absolutes.keys() | placed)
         self._words, self._known = vocabulary(), known
         self._of: dict[int, int] = {}
         self._joints: list[tuple[Event, Token, str, int | None]] = []
+        """The events, each with a word of it, how it is joined, and to the event of which verb, by token."""
 
     def read(self) -> list[Event]:
         """The events, in the order of the text."""
@@ -62,11 +62,11 @@ class Reader:
         self._postures()
         self._sort()
         self._resolve()
-        return self.events
+        return [event for event, *_ in self._joints]
 
     def without_subject(self) -> int:
         """The number of verbs that lack their subject."""
-        subjects = ((self.events[number].subject, self.doc[i].tag_) for i, number in self._of.items())
+        subjects = ((self._joints[number][0].subject, self.doc[i].tag_) for i, number in self._of.items())
         return sum(who is not None and not who.lemma and tag in ("VBZ", "VBD", "NNS", "NN") for who, tag in subjects)
 
     def missed(self) -> Iterator[Token]:
@@ -92,7 +92,6 @@ class Reader:
             last = phrase.idx + len(phrase)
             event = Event(verb, Ref("person", who), first=phrase.idx, last=last, ongoing=True, state=True)
             self._joints.append((event, phrase, "with", clause.i if clause is not None else None))
-            self.events.append(event)
 
     def _postures(self) -> None:
         """Adds how parts of the body are held beside a clause: "with arms crossed"."""
@@ -123,7 +122,6 @@ class Reader:
             for phrase in each.placed():
                 self._arguments.place(phrase, who, event)
             self._joints.append((event, each.preposition, "with", clause.i if clause is not None else None))
-            self.events.append(event)
 
     def _holder(self, absolute: Absolute, clause: Token | None) -> Ref | None:
         """The person who holds a part of the body so: the clause's subject, where nothing says another."""
@@ -131,7 +129,7 @@ class Reader:
         if clause is None:  # "a person with one hand on the hip", "Both hands behind the back, chin up."
             held = self.cast.seen.get(before.i) or reference(before, self.cast, "")
             return held if held.kind == "person" else Ref("person", "ab")
-        subject = self.events[self._of[clause.i]].subject
+        subject = self._joints[self._of[clause.i]][0].subject
         if before.pos_ in ("NOUN", "PROPN") and absolute.state.lower_ == "behind":
             return self.cast.seen.get(before.i, subject)  # "cuffs the thief, hands behind his back"
         return subject
@@ -146,8 +144,7 @@ class Reader:
 
     def _sort(self) -> None:
         """Puts what is held from the start of a sentence before its verbs."""
-        order = sorted(range(len(self.events)), key=lambda number: self.events[number].first)
-        self.events = [self.events[number] for number in order]
+        order = sorted(range(len(self._joints)), key=lambda number: self._joints[number][0].first)
         self._joints = [self._joints[number] for number in order]
         place = {number: i for i, number in enumerate(order)}
         self._of = {token: place[number] for token, number in self._of.items()}
@@ -157,7 +154,7 @@ class Reader:
         for number, (event, token, kind, head) in enumerate(self._joints):
             if head is None:  # a main clause follows the last sentence's last event
                 first = token.sent.start_char
-                before = [i for i, other in enumerate(self.events) if other.first < first]
+                before = [i for i, (other, *_) in enumerate(self._joints) if other.first < first]
                 event.joint, event.beside = ("after", before[-1]) if before else ("", None)
             else:
                 event.joint, event.beside = kind, self._of.get(head, number - 1 if number else None)
@@ -189,14 +186,12 @@ class Reader:
             event.object, event.subject = (event.subject, self._owner(event.subject, head))  # "with both arms raised"
             event.ongoing, kind = True, "with"
         self.cast.focus = event.subject.who if event.subject is not None and self._is_mutual(event) else ""
-        self._of[token.i] = len(self.events)
-        if kind == "comp" and beside in self._of and self._of[beside] < len(self.events):
-            above = self.events[self._of[beside]]
+        self._of[token.i] = len(self._joints)
+        if kind == "comp" and beside is not None and (above := self._event_of(self.doc[beside])) is not None:
             above.words.append(lemma)
             if above.object is None and subject is not None and subject is not above.subject:
                 above.object = subject  # "helps him stand": in the syntax, he is only the second verb's
         self._joints.append((event, token, kind, beside))
-        self.events.append(event)
 
     def _is_mutual(self, event: Event) -> bool:
         """True for what the two do together even where one is named first."""
@@ -215,12 +210,11 @@ class Reader:
         if ref.kind != "person" or not has(token, "prep", "dobj"):
             self.cast.seen.pop(token.i, None)
             return
-        before = self.events[self._of[token.head.i]]
+        before = self._joints[self._of[token.head.i]][0]
         said = {"subject": ref, "object": before.object, "dative": before.dative, "ongoing": False, "state": False}
         event = before.bare(before.lemma, **said, first=token.idx, last=token.idx + len(token.text))
         self._arguments.fill(token, event)
         self._joints.append((event, token, "with", token.head.i))
-        self.events.append(event)
 
     def _also(self, token: Token) -> None:
         """Adds what is done with a further part of the body: "raises the left arm and the right leg"."""
@@ -236,7 +230,6 @@ class Reader:
             last = token.idx + len(token.text)
             event = replace(above, object=ref, words=list(above.words), noun=None, first=token.idx, last=last)
             self._joints.append((event, token, "with", noun.head.i))
-            self.events.append(event)
 
     def _polarity(self, token: Token, head: Token | None, event: Event) -> None:
         children = {child.lower_ for child in token.children if child.dep_ in ("neg", "det", "preconj", "advmod", "cc")}
@@ -305,7 +298,7 @@ class Reader:
 
     def _event_of(self, head: Token) -> Event | None:
         number = self._of.get(head.i)
-        return self.events[number] if number is not None and number < len(self.events) else None
+        return self._joints[number][0] if number is not None and number < len(self._joints) else None
 
     def _joint(self, token: Token, head: Token | None) -> tuple[str, int | None]:
         """The place of a clause in time beside another, as (kind, the token of that one's verb).
@@ -318,8 +311,9 @@ class Reader:
         above = head if head is not None else next((t for t in token.ancestors if self._tree.is_clause(t)), None)
         previous = max((i for i in self._of if i < token.i), default=None)
         own = next((kind for mark in marks if (kind := self._words.marks.get(mark))), "")
-        listed = above is not None and above.i < token.i and token.dep_ in _LISTED and not own
-        if not closed("then").isdisjoint(marks) or (listed and self._then_before(token)):
+        later = above is not None and above.i < token.i and token.dep_ in _LISTED and not own
+        then = any(t.lower_ in closed("then") for t in self.doc[previous or 0 : token.i])
+        if not closed("then").isdisjoint(marks) or (later and then):
             return "then", previous
         if not closed("at once").isdisjoint(marks) and token.dep_ != "xcomp":
             return "with", previous
@@ -334,8 +328,10 @@ class Reader:
             return self._words.noun_marks.get(token.head.lower_, "with"), above.i
         if token.dep_ == "pcomp":
             return self._words.marks.get(token.head.lower_, "with"), above.i
-        if token.dep_ == "advcl":
-            return own or "while", above.i
+        if token.dep_ == "advcl":  # of the nearest in a list: "walks up and hides when she turns"
+            listed = (i for i in self._of if above.i < i < token.i and self.doc[i].dep_ == "conj")
+            nearest = max((i for i in listed if above in self.doc[i].ancestors), default=above.i)
+            return own or "while", nearest if own in ("main-after", "main-until", "after") else above.i
         if token.dep_ == "amod":
             return "while", above.i
         if token.dep_ == "relcl" and token.i > above.i and token.tag_ != "VBG" and tells_on(token):
@@ -349,8 +345,3 @@ class Reader:
             self._tree.mains.append(token.i)
             return "after", None
         return "conj", above.i
-
-    def _then_before(self, token: Token) -> bool:
-        """True if "then" stands between a clause and the verb before it."""
-        before = max((i for i in self._of if i < token.i), default=0)
-        return any(self.doc[i].lower_ in closed("then") for i in range(before, token.i))

@@ -79,6 +79,10 @@ def related(
             relations[other.id].append(Relation(kind=_FOR_THE_OTHER[kind], act=act.id))  # type: ignore[arg-type]
         else:
             relations[act.id].append(Relation(kind=kind if kind in _KINDS else "with", act=other.id))  # type: ignore[arg-type]
+    for act in told:  # "walks up and hides when she turns": she turns when he is there
+        after = [r for r in relations[act.id] if r.kind == "after"]
+        for first in (r.act for r in after if not relations[r.act] and not acts[r.act].already):
+            relations[first] = [r for r in after if int(r.act) < int(first)]
     return [acts[act.id].model_copy(update={"order": tuple(relations[act.id])}) for act in told]
 
 

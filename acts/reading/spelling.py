@@ -49,10 +49,6 @@ class Speller:
         # swapped letters are likelier than wrong ones
         return min(near, key=lambda form: (sorted(word) != sorted(form), form), default=None)
 
-    def verbs_found(self, doc: Doc) -> dict[int, tuple[str, str]]:
-        """Verbs that were taken for something else: offset → (a safe verb in the same form, the true lemma)."""
-        return verbs_taken_for_nouns(doc, self.forms) | deeds_done(doc, self.is_deed)
-
     def suspects(self, doc: Doc) -> dict[int, tuple[str, str]]:
         """Forms of verbs that were taken for something else, rightly or not: offset → (a safe verb, its lemma)."""
         part, forms = vocabulary().part, self.forms

@@ -260,9 +260,12 @@ class Subjects:
     def _told(self, token: Token, head: Token | None) -> Ref | None:
         """The subject that stands beside a verb."""
         before = token.nbor(-1) if token.i > 1 else token
+        which = before.nbor(-1) if before.lower_ == "one" and before.i > 0 else before  # "the other one counts"
         # "the other ducks" may be birds to the parser
-        if before.lower_ in closed("ordinals") and before.nbor(-1).lower_ == "the" and is_finite(token):
-            return reference(before, self._cast, "")
+        if which.lower_ in closed("ordinals") and which.nbor(-1).lower_ == "the" and is_finite(token):
+            self._cast.seen[before.i] = other = reference(which, self._cast, "")
+            return other
+        helper = self._found.get(head.i) if head is not None and token.dep_ in ("ccomp", "xcomp") else None
         # "he comes running"
         moving = (c for aux in token.children if aux.dep_ == "aux" for c in aux.children)
         for child in (*token.children, *moving):
@@ -272,14 +275,15 @@ class Subjects:
                     return antecedent
                 if child.tag_ in ("VBZ", "VBD") and (known := self._found.get(child.i)) is not None:
                     return known  # "she leans back, then kicks"
-                ref = self._cast.seen.get(child.i) or reference(child, self._cast, "")
+                # "helps him get up"
+                whose = helper.who if helper is not None and child.lower_ in closed("somebody") else ""
+                ref = self._cast.seen.get(child.i) or reference(child, self._cast, whose)
                 if child.lower_ in ("nobody", "neither", "none") or (
                     child.lower_ == "one" and "no" in {c.lower_ for c in child.children}
                 ):
                     return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
                 return ref
             if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
-                helper = self._found.get(head.i)
                 return reference(child, self._cast, helper.who if helper is not None else "")
             if child.dep_ in ("det", "preconj") and child.lower_ in (
                 "both",

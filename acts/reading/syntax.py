@@ -175,12 +175,25 @@ def is_kept(token: Token) -> bool:
     return keeps and token.i > 0 and token.nbor(-1).dep_ == "dobj" and token.nbor(-1).head == token.head
 
 
-def taken_away(verb: Token) -> list[Token]:
-    """The objects of a verb that the parser hung on the one before: "stands behind him and massages his shoulders"."""
-    if verb.dep_ != "conj" or verb.pos_ != "VERB" or has(verb, "dobj", "obj"):
+def hung_on(verb: Token) -> Iterator[Token]:
+    """What belongs to a verb: what hangs on it, but for what belongs to the word before, and what it lacks."""
+    for child in verb.children:
+        if not child.left_edge.i or child not in _taken_away(verb.doc[child.left_edge.i - 1]):
+            yield child
+    yield from _taken_away(verb)
+
+
+def _taken_away(verb: Token) -> list[Token]:
+    """What stands behind a verb, and the parser hung on another: "stands and rubs his back", "walks off crying"."""
+    if verb.pos_ != "VERB" or verb.i + 1 == len(verb.doc):
+        return []
+    behind = verb.doc[verb.i + 1]
+    if behind.dep_ in ("advmod", "prt") and behind.lower_ in vocabulary().directions and not behind.n_lefts:
+        return [behind] if behind.head.i > behind.i and behind.head.tag_ == "VBG" else []
+    if verb.dep_ != "conj" or has(verb, "dobj", "obj"):
         return []
     others = (c for above in verb.ancestors for c in above.children if c.dep_ in ("dobj", "obj"))
-    return [noun for noun in others if noun.left_edge.i == verb.i + 1]
+    return [noun for noun in others if noun.left_edge == behind]
 
 
 def adverb_of(adjective: str) -> str:
@@ -332,7 +345,7 @@ def spans(doc: Doc, events: Sequence[Event]) -> Iterator[tuple[int, int]]:
         own = [token]
         waiting = [token]
         while waiting:
-            for child in waiting.pop().children:
+            for child in hung_on(waiting.pop()):
                 if (child.idx in heads and heads[child.idx] is not event) or child.dep_ in ("punct", "cc", "mark"):
                     continue
                 own.append(child)

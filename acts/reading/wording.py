@@ -92,7 +92,8 @@ class _Preparation:
         if self._stand_at(i, ("in", "front")) and self._lower(i + 2) != "of":
             return self._as_one("ahead", i, 2)
         ends = not self._lower(i + 1).isalpha() or self._lower(i + 1) in ("and", "then", "while", "until")
-        if self._lower(i) == "round" and ends and self._is_verb(self._lower(i - 1)):
+        ends = (ends and self._is_verb(self._lower(i - 1))) or self._lower(i - 1) in ("him", "her")
+        if self._lower(i) == "round" and ends:
             return self._as_one("around", i, 1)  # the adverb, and no noun: "and spin round"
         owned = self._lower(i - 1).endswith("'s") and self._lower(i - 1) not in ("he's", "she's", "it's")
         laid = self._lower(i - 2) == "on" and self._lower(i - 3).startswith(tuple(closed("lies")))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from acts import lexicon, read
-from acts.accounting import account, unread_words
+from acts.accounting import account
 from acts.checking import checked
 from acts.qualifiers import plain, qualifiers
 from tests.motion.metrics.test_sentence_shapes import duet, put
@@ -47,10 +47,11 @@ from webdemo.inference.engine import note
         ("A man waves while a woman is walking by.", ()),
         ("I want that they are hugging.", ()),
         ("The nurse helps the patient sit down.", ()),
+        ("The loser stomps away sulking.", ()),
     ],
 )
 def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str, ...]) -> None:
-    assert unread_words(read(sentence)) == unread
+    assert account(read(sentence)).unread == unread
 
 
 @pytest.mark.parametrize(
@@ -150,7 +151,7 @@ def test_places_targets_and_verbs_that_no_verdict_says_are_named(sentence: str, 
 def test_a_note_tells_them_also_where_the_act_is_not_measured_or_not_seen(sentence: str, words: str) -> None:
     plan = read(sentence)
     (row,) = checked(plan, duet())
-    assert not row.done and words in note([[row.to_dict()]], unread=unread_words(plan))
+    assert not row.done and words in note([[row.to_dict()]], unread=account(plan).unread)
 
 
 def test_a_long_note_names_fewer_of_each_kind() -> None:

@@ -18,7 +18,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, cast
 
-from acts.accounting import unread_words
+from acts.accounting import account
 from acts.checking import NO_RULE, checked, describe
 from acts.plan import PlanFrames
 from acts.things.furnishing import judge_things
@@ -298,7 +298,7 @@ def judged(request: Any, result: Result) -> Judged:
     """A result with the verdicts on the acts of its request's words; unchanged where there are none to judge."""
     plans = _plans(request)
     lengths = lengths_of(result.manifest)
-    unread = tuple(dict.fromkeys(words for plan, *_ in plans for words in unread_words(plan)))
+    unread = tuple(dict.fromkeys(words for plan, *_ in plans for words in account(plan).unread))
     judgements = [_judged_sample(plans, duet, lengths) for duet in result.duets] if plans else []
     rows = tuple(own["checked"] for own in judgements)
     if not any(rows):

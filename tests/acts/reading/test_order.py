@@ -43,6 +43,15 @@ def test_then_at_the_same_time_is_after_what_came_before() -> None:
     assert [(r.kind, r.act) for r in bow.order] == [("after", clap.id)]
 
 
+@pytest.mark.parametrize(
+    "words", ["He taps her and hides when she turns around.", "He taps her. When she turns, he hides."]
+)
+def test_what_an_act_waits_for_comes_after_what_is_told_before(words: str) -> None:
+    order = {act.act: {relation.act for relation in act.order} for act in read(words).acts}
+    ids = {act.act: act.id for act in read(words).acts}
+    assert not order["pat"] and order["turn-around"] == {ids["pat"]} and ids["turn-around"] in order["hide-and-seek"]
+
+
 @pytest.mark.parametrize("words", ["high-five, walk", "They hug and then part."])
 def test_the_first_of_two_verbs_comes_first(words: str) -> None:
     first, then = read(words).acts

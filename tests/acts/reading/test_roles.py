@@ -96,6 +96,19 @@ def test_what_is_done_instead_is_all_that_is_done() -> None:
         ("He dares to hope.", []),
         ("Romeo kneels before Juliet and kisses her hand.", ["a kneel b", "a kiss-hand b"]),
         ("she drops her keys he picks them up", ["a let-go", "b pick-up-thing a"]),
+        # another acts in the clause behind a participle, or behind one that needs no pronoun to go on
+        ("Two kids playing tag, one falls down and the other laughs.", ["ab tag", "a fall-down", "b laugh"]),
+        ("One person holding a ball, the other claps.", ["a hold-thing", "b clap a"]),
+        ("One claps while the other one counts on her fingers.", ["a clap b", "b gesture-about a"]),
+        ("A thief runs away, she chases him.", ["a run-away b", "b chase a"]),
+        ("A dancer spins and she bows.", ["a spin", "a bow"]),
+        # who helps is not the one who is helped
+        ("A falls and B helps him get up.", ["a fall-down", "b help-up a"]),
+        ("A bows and B makes him laugh.", ["a bow", "a laugh"]),
+        # a word that belongs to the verb before it, what is done to do something else, and how somebody is found
+        ("The loser stomps away sulking.", ["a storm-off b", "a sulk"]),
+        ("A jumps to catch the ball.", ["a jump", "a catch-thing"]),
+        ("A waves to a seated man.", ["a wave b", "b sit-down"]),
     ],
 )
 def test_who_does_what_to_whom(text: str, acts: list[str]) -> None:

@@ -44,7 +44,6 @@ from tests.acts.reading.reading import told
         ("One person pushes the other and the other sits down.", [("push", "a", "b"), ("sit-down", "b", None)]),
         # "the other ducks" may be birds to the parser
         ("A man punches and the other ducks.", [("punch", "a", None), ("duck", "b", None)]),
-        ("A man waves and the other claps.", [("wave", "a", "b"), ("clap", "b", "a")]),
         # nouns that are people where they act
         ("emma pinches jakes cheek, jake runs off", [("pinch", "a", "b"), ("run-away", "b", "a")]),
         # an order about one other person is given to one
@@ -75,13 +74,10 @@ from tests.acts.reading.reading import told
         ("Two girls play pat-a-cake.", [("clap-each-other", "ab", None)]),
         ("They clap their hands.", [("clap", "ab", None)]),
         ("They pull a big cart.", [("pull-thing", "ab", None)]),
-        ("The two men push a car.", [("push-thing", "ab", None)]),
         ("A touches the left wrist.", [("touch-own", "a", None)]),
-        ("B squeezes the right elbow.", [("touch-own", "b", None)]),
         ("A touches B's left wrist.", [("touch", "a", "b")]),
         ("A taps B and touches the left wrist.", [("pat", "a", "b"), ("touch-own", "a", None)]),
         ("a person grabs something with both hands", [("grab-thing", "a", None)]),
-        ("a man touches something in front of him", [("touch-thing", "a", None)]),
         ("a person moves objects on a shelf", [("move-thing", "a", None)]),
         ("a person loses his balance", [("stumble", "a", None)]),
         ("a person returns to a standing position", [("stand-still", "a", None)]),
@@ -126,13 +122,10 @@ from tests.acts.reading.reading import told
         ("They walk up to each other and hug.", [("walk-up", "ab", None), ("hug", "ab", None)]),
         # both do what two people do
         ("Two people do jumping jacks.", [("jumping-jacks", "ab", None)]),
-        ("Two women do squats.", [("squats", "ab", None)]),
         # an object that the parser hangs on the verb before
         ("B stands behind A and massages A's shoulders.", [("stand-behind", "b", "a"), ("massage", "b", "a")]),
-        ("B stands behind A and rubs A's back.", [("stand-behind", "b", "a"), ("touch", "b", "a")]),
         # a noun that stands for what is done
         ("B returns the salute.", [("salute", "b", "a")]),
-        ("She returns the wave.", [("wave", "a", "b")]),
         ("A throws a ball to B and B hits it back.", [("throw-ball", "a", "b"), ("rackets", "b", None)]),
         # neither of the two
         ("He walks a dog.", [("walk-ahead", "a", None)]),
