@@ -13,13 +13,11 @@ from tests.acts.reading.reading import told
         # what is refused is what one would do with an offer
         ("A offers B a cup and B refuses it.", [("offer-thing", "a", "b"), ("take-from", "b", "a")]),
         ("A holds out a hand and B refuses it.", [("offer-thing", "a", "b"), ("hold-hands", "b", "a")]),
-        ("A marches off.", [("walk-away", "a", "b")]),
         # a hand that is caught, where nobody falls
         ("A catches B by the wrist.", [("hold-hands", "a", "b")]),
         # an act that the next one begins with
         ("A bends down, picks up a cup and bows.", [("pick-up-thing", "a", None), ("bow", "a", None)]),
         ("A bends down twice and picks up a cup.", [("bend-down", "a", None), ("pick-up-thing", "a", None)]),
-        ("They skip forward together.", [("skip-together", "ab", None)]),
         # a list that goes on in a relative clause, and a verb that is done in return
         (
             "One shoves the other, who stumbles, regains balance and shoves back.",
@@ -27,11 +25,7 @@ from tests.acts.reading.reading import told
         ),
         # whose shoes they are
         ("A sits down and B ties his shoes for him.", [("sit-down", "a", None), ("tie-other-shoes", "b", "a")]),
-        ("A takes off his shoes.", [("change-shoes", "a", None)]),
         ("A turns away and covers his face.", [("turn-away", "a", "b"), ("cover-face", "a", None)]),
-        ("A covers B's eyes from behind.", [("cover-eyes", "a", "b")]),
-        ("He carries her piggyback.", [("carry-back", "a", "b")]),
-        ("A staggers towards B.", [("stagger-to", "a", "b")]),
         # WordNet's verbs with their particles
         ("He is bowled over.", [("push-over", "b", "a")]),
         ("He dozes off.", [("lie-down", "a", None)]),
@@ -71,15 +65,11 @@ from tests.acts.reading.reading import told
         ("The one on the left waves, and the one on the right bows.", [("wave", "a", "b"), ("bow", "b", None)]),
         # what the two do to each other's hands, to things, and with one's own body
         ("They clap hands with each other.", [("clap-each-other", "ab", None)]),
-        ("Two girls play pat-a-cake.", [("clap-each-other", "ab", None)]),
-        ("They clap their hands.", [("clap", "ab", None)]),
-        ("They pull a big cart.", [("pull-thing", "ab", None)]),
         ("A touches the left wrist.", [("touch-own", "a", None)]),
         ("A touches B's left wrist.", [("touch", "a", "b")]),
         ("A taps B and touches the left wrist.", [("pat", "a", "b"), ("touch-own", "a", None)]),
         ("a person grabs something with both hands", [("grab-thing", "a", None)]),
         ("a person moves objects on a shelf", [("move-thing", "a", None)]),
-        ("a person loses his balance", [("stumble", "a", None)]),
         ("a person returns to a standing position", [("stand-still", "a", None)]),
         # a sentence that names nobody is about one, where its verb says so
         ("B waves.", [("wave", "b", "a")]),
@@ -97,12 +87,8 @@ from tests.acts.reading.reading import told
         ("a person limps on their left foot.", [("limp-along", "a", None)]),
         ("a person stands with both hands up.", [("stand-still", "a", None), ("raise-arm", "a", None)]),
         ("the man places both hands back at his sides.", [("lower-arm", "a", None)]),
-        ("crossing arms over chest.", [("fold-arms", "a", None)]),
         ("holding hands", [("hold-hands", "ab", None)]),
         ("a man tilts left and right quickly.", [("lean", "a", None), ("lean", "a", None)]),
-        ("a person spins their right arm.", [("circle-arms", "a", None)]),
-        ("a man takes a sitting position.", [("sit-down", "a", None)]),
-        ("a person stands in a t-pose.", [("arms-out", "a", None)]),
         (
             "a person walks forward picks up an object and walks back",
             [("walk-ahead", "a", None), ("pick-up-thing", "a", None), ("go-back", "a", None)],
@@ -160,7 +146,6 @@ from tests.acts.reading.reading import told
         ("A man walks and hops sideways.", [("walk-ahead", "a", None), ("jump", "a", None)]),
         ("A man walks down a ramp.", [("walk-ahead", "a", None)]),
         ("A man holds the pose.", [("stand-still", "a", None)]),
-        ("A man gets down on his hands and knees.", [("all-fours", "a", None)]),
         ("A man leans on his knees.", [("lean", "a", None)]),
         ("A man pats the top of his head.", [("touch-face", "a", None)]),
         ("A couple of men hug.", [("hug", "ab", None)]),
