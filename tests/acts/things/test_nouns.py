@@ -14,7 +14,6 @@ from motion.things import KINDS
     ("noun", "kind"),
     [
         ("mugs", "cup"),
-        ("a red rose", "flower"),
         ("paper bag", "bag"),
         ("knives", "sword"),
         ("Sofa", "bench"),
