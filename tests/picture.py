@@ -22,8 +22,8 @@ SIZE = (1240, 775)
 SHOWN = (992, 620)
 """Pixels of the window and of the picture."""
 SENTENCE = "Two people walk up to each other and give each other a high five."
-EVERY, FPS = 3, 10
-"""Frames of the motion from one picture to the next, and pictures a second: the motion at its own speed."""
+EVERY, FPS, LAST = 3, 10, 150
+"""Frames of the motion from one picture to the next, pictures a second (the motion's own speed), and frames shown."""
 
 
 def generate(page: Page) -> int:
@@ -39,7 +39,7 @@ def generate(page: Page) -> int:
 def record(page: Page, frames: int) -> list[Image.Image]:
     """Pictures of the page at every third frame of the motion."""
     pictures = []
-    for frame in range(0, frames, EVERY):
+    for frame in range(0, min(frames, LAST), EVERY):
         page.locator(".pdd-range").fill(str(frame))
         page.wait_for_timeout(120)
         shot = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
