@@ -19,7 +19,6 @@ from motion.vectors import Array
 from .beginnings import Room, Take, beginning, going, roomy
 from .figures import figure_parts, figure_poses
 from .floor import plan
-from .gaits import STEPS, low_gait_parts, step_parts
 from .gestures import hand_parts, hands_of
 from .holds import COUPLE, hold_parts, pull_parts, twirl_parts
 from .lifts import Carrying
@@ -32,7 +31,7 @@ from .recordings import Performance, dancing, performance, standing_by, walking
 from .score import Move, Score, Touch, at_start, goes
 from .strikes import strike_parts
 from .touches import touch_parts
-from .window import SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
+from .window import OFTEN, SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
 
 _POSED = 4
 """Frames between two poses of a statue: as many as between the network's knots, of which others would waver."""
@@ -41,6 +40,8 @@ _DRAFTED = 6
 _RESTS, _STAYS, _FACES = 15, 0.03, 0.2
 """Frames before and after one at which somebody on their way rests, and the metres and radians that they may move."""
 _FEET = tuple(JOINT[f"{side}_{joint}"] for side in ("left", "right") for joint in ("ankle", "foot"))
+_LOW, _GETS_DOWN = ("crawls", "on the knees"), 40
+"""Gaits of people who are low, and the frames in which somebody gets down for one."""
 _PLACED = 30
 """Frames between two places of somebody whose poses are a draft."""
 
@@ -263,16 +264,15 @@ class _Beat:
         alone = not (score.touch or score.joined or score.strike)
         free = alone and not score.linked
         for person, way in ways.items():
-            if (gait := gaits.get(person)) is None:
-                parts += stretch.known_way(_until_posed(way, hand, stretch))
-            elif gait not in STEPS:
-                parts += softened(low_gait_parts(gait, person, self.down, stretch))
-            else:
-                parts += softened(step_parts(gait, person, score, stretch)) if free else stretch.known_way(way)
-            if alone and gait is None:
-                loose = "ab"[person] in score.loose
-                joints = () if loose else all_but(HANDS)
-                parts += _going_parts(person, stretch, self.story.seed, joints, waits=free and loose)
+            gait = gaits.get(person, "")
+            if gait in _LOW:
+                parts += softened(_low_gait_parts(gait, person, self.down, stretch))
+                continue
+            parts += stretch.known_way(_until_posed(way, hand, stretch))
+            if free or (alone and not gait):
+                busy = "ab"[person] in score.gestures if gait else "ab"[person] not in score.loose
+                loose = free and "ab"[person] in score.loose
+                parts += _going_parts(person, stretch, self.story.seed, all_but(HANDS) if busy else (), loose, gait)
         leads = "ring" if any(move.backwards for move in moves) and score.by_both_hands else ""
         if (hold := score.hold or leads) not in ("", COUPLE) and len(ways) == 2:
             parts += hold_parts(hold, stretch)
@@ -363,26 +363,34 @@ def _bystander_parts(
     return [*stretch.known_way(way), replace(draft, soft=True, free=True), *hands]
 
 
-def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int], *, waits: bool) -> list[Part]:
-    """A recorded draft of somebody with a way: of some joints where they walk or run ahead, and where they ``wait``.
+def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int], waits: bool, gait: str) -> list[Part]:
+    """Somebody with a way: some joints where they walk or run ahead, and a recorded draft where they ``wait``.
 
-    The feet of a gait are held: by itself the network drags them over the floor.
+    A walk or a run is a draft, but for its feet: by itself the network drags them over the floor. Another gait is held,
+    as the network does not know it.
     """
     course, own = stretch.course(person), 2 * seed + person
     at = stretch.every(EVENLY)
-    walks, poses = walking(course, own)
-    parts = [(at[walks[at]], poses, joints)]
+    walks, poses = walking(course, own, gait)
+    goes, held, drafts = at[walks[at]], list[Part](), list[Part]()
+    if len(goes) > 1:
+        held = [stretch.known(person, goes, poses[goes], joints if gait else _FEET, kept=bool(gait))]
+        drafts = [] if gait else [stretch.known(person, goes, poses[goes], joints)]
     if waits:
         around = np.clip(at + np.array([[-_RESTS], [_RESTS]]), 0, stretch.frames - 1)
         first, last = course.places[around]
         moved, turned = np.linalg.norm(last - first, axis=-1), np.ptp(course.headings[around], axis=0)
         rests = at[(moved < _STAYS) & (turned < _FACES)]
         waiting = standing_by(course.places, course.headings, np.arange(stretch.frames) + stretch.start, own)
-        parts.append((rests, waiting, (*TRUNK, *HANDS)))
-    goes = at[walks[at]]
-    feet: list[Part] = [stretch.known(person, goes, poses[goes], _FEET)] if len(goes) > 1 else []
-    drafts = [stretch.known(person, frames, known[frames], own) for frames, known, own in parts if len(frames) > 1]
-    return feet + [replace(draft, soft=True, free=True) for draft in drafts]
+        drafts += [stretch.known(person, rests, waiting[rests], (*TRUNK, *HANDS))] if len(rests) > 1 else []
+    return held + [replace(draft, soft=True, free=True) for draft in drafts]
+
+
+def _low_gait_parts(gait: str, person: int, down: Collection[int], stretch: Stretch) -> list[Part]:
+    """The poses of a person who crawls or walks on the knees along a way; who is not ``down`` gets down first."""
+    frames = stretch.every(OFTEN, _GETS_DOWN if stretch.start and person not in down else 0)
+    _, poses = walking(stretch.course(person), 0, gait)
+    return [stretch.known(person, frames, poses[frames])] if len(frames) else []
 
 
 def _dancing_parts(stretch: Stretch, seed: int, joints: Sequence[Sequence[int]]) -> tuple[list[Part], dict[int, Way2D]]:

@@ -15,25 +15,17 @@ from numpy.typing import NDArray
 
 from acts.shapes import Gesture
 from motion import FPS
-from motion.limbs import bent_towards
 from motion.steering import STRIDE, Steps
 from motion.transforms import heading_matrix
 from motion.vectors import Array
 
 from .gestures import hands_of, wrist
 from .places import Course, Way2D, eased
-from .poses import BOTH_SIDES, JOINT, LOWER, TRUNK, Turns, about, all_but, bending, poses_of, upright
+from .poses import JOINT, LOWER, TRUNK, all_but, upright
+from .recordings import carried
 from .score import Lift
 from .window import KnownFrames, Stretch
 
-_BESIDE = {"up": (0.0, 0.38, 0.3), "arms": (0.0, 0.2, 0.29), "back": (0.0, 0.22, -0.2), "drags": (0.0, -0.83, 1.0)}
-"""Metres from the pelvis of the carrier, who faces +Z, to that of the person carried."""
-_LEANS = {"up": -0.08, "arms": -0.03, "back": 0.3, "drags": 1.0}
-"""Radians by which the carrier leans forward."""
-_LEGS = {"up": (-0.15, 0.0, 0.35), "arms": (-0.9, 0.0, 1.2), "back": (-1.25, 0.6, 1.3), "drags": (-0.9, 0.0, 0.1)}
-"""Radians of the thighs forward (negative) and out, about the upright, and of the knees, of the person carried."""
-_UNEVEN = 0.05
-"""Metres by which the left of two hands before the carrier's chest is higher, and the right one lower."""
 OFTEN = 3
 """Frames between two given poses."""
 RISES = 16
@@ -62,87 +54,6 @@ _BODY = all_but(_ELBOWS)
 def takes_hold(carry: str) -> float:
     """Metres between the pelvises at which one takes hold of the other."""
     return 1.0 if carry == "drags" else 0.45
-
-
-def carried(carry: str, place: Array, angle: float) -> tuple[Array, Array]:
-    """The pose of the person carried, and the carrier's.
-
-    Args:
-        carry: how.
-        place: (2,) x and z of the carrier's pelvis in metres.
-        angle: the carrier's heading in radians.
-
-    Returns:
-        (22, 3) metres in the world, with wrists where they hold on and elbows below, and (22, 3) of the carrier, of
-        which the trunk and the arms are meant.
-    """
-    turn = heading_matrix(angle)
-    carrier = bending(place, angle, _LEANS[carry])
-    pose = _pose(carry) @ turn.T + carrier[0] + turn @ np.array(_BESIDE[carry])
-
-    def own(name: str) -> Array:
-        return carrier[JOINT[name]]
-
-    def theirs(name: str) -> Array:
-        return pose[JOINT[name]]
-
-    left, up, ahead = turn[:, 0], np.array([0.0, 1.0, 0.0]), turn[:, 2]
-    if carry == "up":
-        hands = {s: theirs("spine2") + sign * 0.12 * left + 0.08 * ahead for s, sign in BOTH_SIDES}
-        holds = {s: own(f"{o}_shoulder") + 0.1 * up for s, o in (("left", "right"), ("right", "left"))}
-    elif carry == "arms":
-        hands = {
-            "left": theirs("spine3") - 0.1 * up,
-            "right": 0.7 * theirs("right_knee") + 0.3 * theirs("right_hip") - 0.11 * up,
-        }
-        holds = {
-            "left": theirs("pelvis") + 0.13 * up + 0.05 * ahead,  # in the lap
-            "right": own("neck") + 0.05 * left - 0.1 * ahead,  # around the neck
-        }
-    elif carry == "drags":
-        hands = {s: theirs(f"{o}_ankle") for s, o in (("left", "right"), ("right", "left"))}
-        holds = {s: theirs(f"{s}_shoulder") + 0.45 * ahead - 0.04 * up for s, _ in BOTH_SIDES}
-    else:
-        hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.1 * up for s, _ in BOTH_SIDES}
-        holds = {
-            s: own("spine3") + 0.16 * ahead + sign * 0.02 * left + (sign * _UNEVEN - 0.02) * up
-            for s, sign in BOTH_SIDES
-        }
-    for side, _ in BOTH_SIDES:
-        _bend(carrier, side, hands[side])
-        if carry == "drags":  # the arms trail on the floor
-            pose[JOINT[f"{side}_wrist"]] = holds[side]
-        else:
-            _bend(pose, side, holds[side])
-    return pose, carrier
-
-
-def _bend(pose: Array, side: str, hand: Array) -> None:
-    """Has an arm of a pose (22, 3) reach for a place, with the elbow below."""
-    arm = [JOINT[f"{side}_{joint}"] for joint in ("shoulder", "elbow", "wrist")]
-    shoulder, elbow, wrist = pose[arm][:, None]
-    elbow, _ = bent_towards(shoulder, elbow, wrist, hand[None], np.array([[0.0, -1.0, 0.0]]))
-    pose[arm[1:]] = elbow[0], hand
-
-
-def _pose(carry: str) -> Array:
-    """(22, 3) metres from the pelvis of a person whose carrier faces +Z."""
-    hip, out, knee = _LEGS[carry]
-    turns: Turns = {}
-    for side, sign in BOTH_SIDES:
-        turns[f"{side}_hip"] = heading_matrix(sign * out) @ about(0, hip)
-        turns[f"{side}_knee"] = about(0, knee)
-        turns[f"{side}_shoulder"] = about(2, -sign * 1.2)
-    if carry == "up":
-        turns["pelvis"] = heading_matrix(np.pi)
-    elif carry == "back":
-        turns["pelvis"] = about(0, 0.25)
-    elif carry == "drags":  # on the back, the feet towards the carrier
-        turns["pelvis"] = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
-    else:  # the head on the carrier's left, the face up
-        turns["pelvis"] = np.array([[0.0, 0.85, -0.53], [0.0, 0.53, 0.85], [1.0, 0.0, 0.0]])
-        turns["spine1"] = about(0, 0.2)
-    return poses_of(turns)[0]
 
 
 @dataclass(frozen=True)
@@ -227,8 +138,7 @@ class Carrying:
         at = self.stretch.shown(np.unique(np.array(held, dtype=int)))
         if len(at):
             walking = self._walking()[at - first]
-            made = [carried(self.lift.carry, course.places[t], float(course.headings[t])) for t in at]
-            theirs, own = (np.stack(poses) for poses in zip(*made, strict=True))
+            theirs, own = carried(self.lift.carry, course.places[at], course.headings[at])
             sinks = walking[:, :1] - own[:, :1]
             own += sinks
             theirs += 0.0 if self.lift.carry == "drags" else sinks

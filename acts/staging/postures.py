@@ -18,7 +18,6 @@ from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 from motion.vectors import Array
 
-from .gaits import on_all_fours
 from .places import HALT, Standing
 from .poses import (
     FLAT,
@@ -41,6 +40,7 @@ from .poses import (
     stooping,
     upright,
 )
+from .recordings import on_all_fours
 from .score import Change, Score, at_start
 from .window import Part, Stretch
 

@@ -1,7 +1,8 @@
 """Recorded people who stand by, walk, run, gesture and dance: drafts that the network makes its motion from.
 
 A gesture is a take of recorded people, chosen by the seed: a hand that goes up, what it does there, and the way down.
-What it does is played to and fro as long as the gesture lasts.
+What it does is played to and fro as long as the gesture lasts. What nobody was recorded in, such as a limp, a crawl or
+a person on another's back, was drawn, and is kept and played in the same way.
 """
 
 from __future__ import annotations
@@ -44,8 +45,8 @@ _TURN = 0.55
 """Share of the time for which the one who talks first does so, and the other after them."""
 _WALKS, _AHEAD = 0.4, 0.7
 """Metres a second from which somebody walks, and the share of their way that is ahead of them, at least."""
-_RUNS = 1.75
-"""Metres a second from which somebody runs."""
+_RUNS, _CREEPS = 1.75, 0.15
+"""Metres a second from which somebody runs, and from which they limp, creep or crawl."""
 _FASTEST = 1.4
 """How much faster a recording is played, at most."""
 _FITTING = 8
@@ -94,15 +95,20 @@ def sampled(poses: Array, at: Array) -> Array:
 
 
 @cache
+def _kept(name: str) -> Mapping[str, Array]:
+    """The recordings (T, …, 22, 3) of a file in metres at :data:`RATE`, by name."""
+    with np.load(_FOLDER / f"{name}.npz", allow_pickle=False) as kept:
+        return {each: kept[each].astype(float) / 1000 for each in sorted(kept.files)}
+
+
+@cache
 def _read(name: str) -> Mapping[str, Array]:
     """Poses (T, 22, 3) in metres at :data:`RATE`, around the origin and facing +Z in the mean, by name."""
     clips = {}
-    with np.load(_FOLDER / f"{name}.npz", allow_pickle=False) as kept:
-        for each in sorted(kept.files):
-            poses = kept[each] / 1000.0
-            facing = heading(poses)
-            mean = float(np.arctan2(np.sin(facing).mean(), np.cos(facing).mean()))
-            clips[each] = (poses - poses[:, :1].mean(0) * [1.0, 0.0, 1.0]) @ heading_matrix(-mean).T
+    for each, poses in _kept(name).items():
+        facing = heading(poses)
+        mean = float(np.arctan2(np.sin(facing).mean(), np.cos(facing).mean()))
+        clips[each] = (poses - poses[:, :1].mean(0) * [1.0, 0.0, 1.0]) @ heading_matrix(-mean).T
     return clips
 
 
@@ -124,9 +130,9 @@ class Gait:
 @cache
 def _read_gaits(action: str) -> tuple[Gait, ...]:
     gaits = []
-    with np.load(_FOLDER / "gaits.npz", allow_pickle=False) as kept:
-        for name in sorted(name for name in kept.files if name.startswith(action)):
-            poses = kept[name] / 1000.0
+    for kept in map(_kept, ("gaits", "drawn")):
+        for name in sorted(name for name in kept if name.rpartition("-")[0] == action):
+            poses = kept[name]
             along = poses[:, 0, 2] + 1e-6 * np.arange(len(poses))
             gaits.append(Gait(poses - poses[:, :1] * [1.0, 0.0, 1.0], along, along[-1] * RATE / (len(along) - 1)))
     return tuple(gaits)
@@ -263,16 +269,10 @@ def performing(figure: Figure, place: Array, angle: float, frames: int, seed: in
     return np.asarray((1 - share) * stands + share * shown)
 
 
-@cache
-def _couples() -> tuple[Array, ...]:
-    with np.load(_FOLDER / "couples.npz", allow_pickle=False) as kept:
-        return tuple(kept[name].swapaxes(0, 1) / 1000.0 for name in sorted(kept.files))
-
-
 def dancing(stand: Standing, frames: int, seed: int) -> Array:
     """Two who dance with each other (2, T, 22, 3) as a recorded couple does, from where they stand."""
-    dice, known = np.random.default_rng([seed, 5]), _couples()
-    couple = known[int(dice.integers(len(known)))][:: int(dice.choice([1, -1]))]
+    dice, known = np.random.default_rng([seed, 5]), list(_kept("couples").values())
+    couple = known[int(dice.integers(len(known)))].swapaxes(0, 1)[:: int(dice.choice([1, -1]))]
     at = np.arange(frames)
     first = couple[:, 0, 0][:, [0, 2]]
     turn = bearing(stand.towards(0)) - bearing(first[1] - first[0])
@@ -283,25 +283,49 @@ def dancing(stand: Standing, frames: int, seed: int) -> Array:
     return np.asarray(poses + apart[:, None, None] * (1 - minimum_jerk(at / FPS / _MEETS))[:, None, None])
 
 
-def walking(course: Course, seed: int) -> tuple[Array, Array]:
+def walking(course: Course, seed: int, gait: str = "") -> tuple[Array, Array]:
     """A person on a way over the floor: (T,) whether they walk or run ahead, and (T, 22, 3) metres as they do.
 
-    A recorded gait near their pace goes on by as much as they do, so that its feet stay where they stand.
+    Strides near their pace go on by as much as they do, so that feet stay where they stand.
+
+    Args:
+        course: of the person.
+        seed: chooses the recording, and where it begins.
+        gait: as in :class:`acts.shapes.Go`; "" for a walk or a run.
     """
     steps = np.gradient(course.places, axis=0) if len(course.places) > 1 else np.zeros((1, 2))
     ahead = np.sum(steps * direction(course.headings), axis=1)
     gone = np.linalg.norm(steps, axis=1)
-    walks = (gone * FPS > _WALKS) & (ahead > _AHEAD * gone)
-    if not walks.any():
-        return walks, np.zeros((len(walks), len(JOINT), 3))
-    pace = float(gone[walks].mean()) * FPS
+    walks = (gone * FPS > (_CREEPS if gait else _WALKS)) & (ahead > _AHEAD * gone)
+    pace = max(float(gone[walks].sum()) / max(int(walks.sum()), 1) * FPS, _CREEPS)
     dice = np.random.default_rng([seed, 4])
-    known = _read_gaits("run" if pace > _RUNS else "walk")
-    fitting = sorted(known, key=lambda gait: abs(math.log(pace / gait.pace)))[:_FITTING]
-    gait = fitting[int(dice.integers(len(fitting)))]
-    length = gait.along[-1]
-    at = np.interp((dice.uniform(0, length) + np.cumsum(gone)) % length, gait.along, np.arange(len(gait.along)))
-    return walks, placed(sampled(gait.poses, at), course.places, course.headings)
+    known = _read_gaits(gait or ("run" if pace > _RUNS else "walk"))
+    fitting = sorted(known, key=lambda strides: abs(math.log(pace / strides.pace)))[:_FITTING]
+    strides = fitting[int(dice.integers(len(fitting)))]
+    length = strides.along[-1]
+    at = np.interp((dice.uniform(0, length) + np.cumsum(gone)) % length, strides.along, np.arange(len(strides.along)))
+    return walks, placed(sampled(strides.poses, at), course.places, course.headings)
+
+
+def on_all_fours(place: Array, angle: float) -> Array:
+    """Somebody on hands and knees, the pelvis over a place (x, z) and the face to a heading: (22, 3) metres."""
+    return placed(_read_gaits("crawls")[0].poses[:1], place, angle)[0]
+
+
+def carried(carry: str, places: Array, headings: Array) -> tuple[Array, Array]:
+    """The poses of a person carried, and the carrier's.
+
+    Args:
+        carry: as in :class:`acts.shapes.Lift`.
+        places: (N, 2) x and z of the carrier, on their feet, in metres.
+        headings: (N,) the carrier's headings in radians.
+
+    Returns:
+        (N, 22, 3) metres in the world, with wrists where they hold on and elbows below, and (N, 22, 3) of the carrier,
+        of which the trunk and the arms are meant.
+    """
+    carrier, pose = (np.broadcast_to(each, (len(places), *each.shape)) for each in _kept("drawn")[carry])
+    return placed(pose, places, headings), placed(carrier, places, headings)
 
 
 def placed(poses: Array, place: Array, angle: float | Array) -> Array:

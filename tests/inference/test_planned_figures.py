@@ -81,7 +81,7 @@ def test_a_person_who_lies_gets_up_before_a_cartwheel(engine: Engine) -> None:
 def test_who_sneaks_away_walks_on_tiptoe_and_whoever_touches_then_walks_as_ever(engine: Engine) -> None:
     found = made(engine, "Person A sneaks away.", seconds=4.0)[0]
     ankles = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
-    assert (found[:, ankles, 1] - found[:, FEET, 1]).min() > 0.09
+    assert (found[25:-25, ankles, 1] - found[25:-25, FEET, 1]).min() > 0.09
     assert np.linalg.norm((found[-1, 0] - found[0, 0])[[0, 2]]) > 1.0
     made(engine, "Person A limps up to person B and hugs them.", seconds=5.0)
 

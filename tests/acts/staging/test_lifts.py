@@ -5,12 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.staging.lifts import carried
+from acts.staging import recordings
 from acts.staging.score import Lift
 from motion import SMPL22
 from motion.metrics.quality import limb_depth
+from motion.vectors import Array
 
 from .staged_words import beginning, lift, moves
+
+
+def carried(carry: str, place: Array, angle: float) -> Array:
+    """(2, 22, 3) the person carried, and the carrier at a place (2,) with a heading."""
+    return np.concatenate(recordings.carried(carry, place[None], np.array([angle])))
 
 
 @pytest.mark.parametrize(
