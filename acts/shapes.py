@@ -7,34 +7,26 @@ is then the second.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core.core_schema import CoreSchema, literal_schema
 
 Metres = Annotated[float, Field(ge=0, le=20)]
 Part = Literal["", "head", "shoulder", "back", "chest", "waist", "arm", "hand", "leg", "foot"]
 
-# The gestures of hands, the movements of legs, trunk and head, and the figures of whole bodies, by kind.
-_Held = Literal["high", "up", "ahead", "spread", "crossed", "behind", "around", "linked", "lowers", "bends", "prays"]
-_AtBody = Literal["hips", "chest", "belly", "head", "mouth", "blows", "ears", "eyes", "phone", "photo"]
-_Shown = Literal["salutes", "claps", "offers", "waves", "beckons", "points", "conducts", "pumps", "beats", "talks"]
-_Swung = Literal["fans", "flaps", "circles", "swings", "shakes", "rubs"]
-_Works = Literal["works", "drums", "types", "juggles", "dribbles", "knocks", "carries"]
-_Crafts = Literal["paints", "brushes", "hammers", "eats", "combs", "writes"]
 
-_Legs = Literal["raises leg", "raises knee", "swings leg", "kicks", "stamps", "taps foot", "crosses legs", "marches"]
-_Stands = Literal["stands on one leg", "turns legs out", "bends knees", "lunges", "stands tall", "on tiptoe"]
-_Trunk = Literal["reaches down", "leans", "is dipped", "twists", "sways", "shakes", "shrugs"]
-_Head = Literal["moves head", "rolls head", "nods", "shakes head", "turns head"]
+class _Named:
+    """One of the names of a file of ``acts/staging``, or of its table, and of ``more``."""
 
-_Exercise = Literal["push-ups", "sit-ups", "jumping-jacks", "lifts-weights", "skips-rope", "hops", "rolls", "warms-up"]
-_Bow = Literal["bows", "bows deeply"]
-_Acrobatics = Literal["handstand", "cartwheel", "somersault", "frog", "leapfrog", "pirouette", "dances"]
-_Sport = Literal["kicks-ball", "stops-ball", "shoots", "shoots-bow", "swings-club", "smashes", "rows", "swims"]
-_Fight = Literal[
-    "kicks", "shadow-boxes", "slashes", "chops", "arm-wrestles", "thumb-wrestles", "bumps-elbow", "bumps-hip", "pulls"
-]
-_Labour = Literal["sweeps", "digs", "ties", "rests-on-knees"]
+    def __init__(self, file: str, *more: str, table: str = "") -> None:
+        names = tomllib.loads((Path(__file__).parent / "staging" / f"{file}.toml").read_text(encoding="utf-8"))
+        self.names = [*(names[table] if table else names), *more]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return literal_schema(self.names)
 
 
 class _Shape(BaseModel):
@@ -132,7 +124,7 @@ class Gesture(_Shape):
     """
 
     do: Literal["gesture"] = "gesture"
-    gesture: Literal[_Held, _AtBody, _Shown, _Swung, _Works, _Crafts]
+    gesture: Annotated[str, _Named("gestures")]
     sides: Literal["left", "right", "both"] = "right"
     times: Annotated[int, Field(ge=0, le=20)] = 0
 
@@ -197,7 +189,7 @@ class Strike(_Shape):
 
 
 class Limb(_Shape):
-    """Legs, trunk or head that move by themselves; the act names the side, the direction and the number.
+    """Legs, trunk or head that move by themselves, as in ``limbs.toml``; the act names side, direction and number.
 
     Attributes:
         does: which movement.
@@ -207,7 +199,7 @@ class Limb(_Shape):
     """
 
     do: Literal["limb"] = "limb"
-    does: Literal[_Legs, _Stands, _Trunk, _Head]
+    does: Annotated[str, _Named("limbs")]
     side: Literal["left", "right", "both"] = "right"
     direction: Literal["", "up", "down", "forward", "back", "out", "left", "right"] = ""
     times: Annotated[int, Field(ge=0, le=20)] = 0
@@ -227,7 +219,7 @@ class Figure(_Shape):
     """
 
     do: Literal["figure"] = "figure"
-    figure: Literal[_Bow, _Exercise, _Acrobatics, _Sport, _Fight, _Labour]
+    figure: Annotated[str, _Named("figures", "bows", "bows deeply", "dances", "shadow-boxes", table="figures")]
     times: Annotated[int, Field(ge=0, le=20)] = 0
     mirrored: bool = False
     meets: bool = False
