@@ -31,7 +31,7 @@ from .recordings import Performance, dancing, performance, standing_by, walking
 from .score import Move, Score, Touch, at_start, goes
 from .strikes import strike_parts
 from .touches import touch_parts
-from .window import OFTEN, SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
+from .window import SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
 
 _POSED = 4
 """Frames between two poses of a statue: as many as between the network's knots, of which others would waver."""
@@ -233,7 +233,9 @@ class _Beat:
                 parts += limb_parts(person, score, stretch, seed)
                 posed[person] = stands
             elif up and who in score.idle & score.frozen:
-                parts += _statue_parts(person, stretch)
+                if len(frames := stretch.every(_POSED, SETTLES if self.start else 0)):
+                    still = upright(np.tile(stretch.halt(person), (len(frames), 1)), stretch.stand.headings[person])
+                    parts.append(stretch.known(person, frames, still))
             elif up and who in score.idle:
                 parts += _bystander_parts(person, stretch, seed)
             elif stays and up and (turned or who in score.gesturing):
@@ -265,14 +267,14 @@ class _Beat:
         free = alone and not score.linked
         for person, way in ways.items():
             gait = gaits.get(person, "")
-            if gait in _LOW:
-                parts += softened(_low_gait_parts(gait, person, self.down, stretch))
-                continue
-            parts += stretch.known_way(_until_posed(way, hand, stretch))
-            if free or (alone and not gait):
-                busy = "ab"[person] in score.gestures if gait else "ab"[person] not in score.loose
-                loose = free and "ab"[person] in score.loose
-                parts += _going_parts(person, stretch, self.story.seed, all_but(HANDS) if busy else (), loose, gait)
+            if gait in _LOW or (gait and free):
+                parts += _gait_parts(gait, way, self.down, score, stretch, self.story.seed)
+            else:
+                parts += stretch.known_way(_until_posed(way, hand, stretch))
+            if alone and not gait:
+                loose = "ab"[person] in score.loose
+                joints = () if loose else all_but(HANDS)
+                parts += _going_parts(person, stretch, self.story.seed, joints, waits=free and loose)
         leads = "ring" if any(move.backwards for move in moves) and score.by_both_hands else ""
         if (hold := score.hold or leads) not in ("", COUPLE) and len(ways) == 2:
             parts += hold_parts(hold, stretch)
@@ -320,9 +322,7 @@ def _until_posed(way: Way2D, hand: KnownFrames | None, stretch: Stretch) -> Way2
     """A way, up to where the same person kneels down to what they touch: from then on poses say where they are."""
     if hand is None or hand.person != way.person or 0 not in hand.joints:
         return way
-    kept = np.asarray(stretch.in_window(way.frames)) < min(hand.frames)
-    headings = None if way.headings is None else way.headings[kept]
-    return Way2D(way.person, np.asarray(way.frames)[kept].tolist(), way.places[kept], headings)
+    return way.only(np.asarray(stretch.in_window(way.frames)) < min(hand.frames))
 
 
 def _keeps_back(score: Score, who: str) -> bool:
@@ -359,38 +359,44 @@ def _bystander_parts(
             hands = softened([stretch.known(person, frames[shown], poses[shown], all_but(joints))])
     at = np.isin(frames, stretch.every(2 * spacing, settles if stretch.start else 0))
     way = Way2D(person, frames[at].tolist(), poses[at, 0][:, [0, 2]], np.full(at.sum(), angle))
-    draft = stretch.known(person, frames, poses, joints or range(len(JOINT)))
-    return [*stretch.known_way(way), replace(draft, soft=True, free=True), *hands]
+    return [*stretch.known_way(way), stretch.draft(person, frames, poses, joints or range(len(JOINT))), *hands]
 
 
-def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int], waits: bool, gait: str) -> list[Part]:
-    """Somebody with a way: some joints where they walk or run ahead, and a recorded draft where they ``wait``.
+def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int], *, waits: bool) -> list[Part]:
+    """A recorded draft of somebody with a way: of some joints where they walk or run ahead, and where they ``wait``.
 
-    A walk or a run is a draft, but for its feet: by itself the network drags them over the floor. Another gait is held,
-    as the network does not know it.
+    The feet of a gait are held: by itself the network drags them over the floor.
     """
     course, own = stretch.course(person), 2 * seed + person
     at = stretch.every(EVENLY)
-    walks, poses = walking(course, own, gait)
-    goes, held, drafts = at[walks[at]], list[Part](), list[Part]()
-    if len(goes) > 1:
-        held = [stretch.known(person, goes, poses[goes], joints if gait else _FEET, kept=bool(gait))]
-        drafts = [] if gait else [stretch.known(person, goes, poses[goes], joints)]
+    walks, poses = walking(course, own)
+    goes, rests, parts = at[walks[at]], at[:0], list[Part]()
     if waits:
         around = np.clip(at + np.array([[-_RESTS], [_RESTS]]), 0, stretch.frames - 1)
         first, last = course.places[around]
         moved, turned = np.linalg.norm(last - first, axis=-1), np.ptp(course.headings[around], axis=0)
         rests = at[(moved < _STAYS) & (turned < _FACES)]
-        waiting = standing_by(course.places, course.headings, np.arange(stretch.frames) + stretch.start, own)
-        drafts += [stretch.known(person, rests, waiting[rests], (*TRUNK, *HANDS))] if len(rests) > 1 else []
-    return held + [replace(draft, soft=True, free=True) for draft in drafts]
+    if len(goes) > 1:
+        feet = stretch.known(person, goes, poses[goes], _FEET)
+        parts += [feet, stretch.draft(person, goes, poses[goes], joints)]
+    if len(rests) > 1:
+        waiting = standing_by(course.places[rests], course.headings[rests], rests + stretch.start, own)
+        parts.append(stretch.draft(person, rests, waiting, (*TRUNK, *HANDS)))
+    return parts
 
 
-def _low_gait_parts(gait: str, person: int, down: Collection[int], stretch: Stretch) -> list[Part]:
-    """The poses of a person who crawls or walks on the knees along a way; who is not ``down`` gets down first."""
-    frames = stretch.every(OFTEN, _GETS_DOWN if stretch.start and person not in down else 0)
-    _, poses = walking(stretch.course(person), 0, gait)
-    return [stretch.known(person, frames, poses[frames])] if len(frames) else []
+def _gait_parts(gait: str, way: Way2D, down: Collection[int], score: Score, stretch: Stretch, seed: int) -> list[Part]:
+    """Somebody on their way with a gait that the network does not know: their poses, and where they rest their places.
+
+    Of people who are low, poses at rest as well, from when those who are not ``down`` already have got down.
+    """
+    person, low = way.person, gait in _LOW
+    walks, poses = walking(stretch.course(person), 2 * seed + person, gait)
+    at = stretch.every(EVENLY, _GETS_DOWN if low and stretch.start and person not in down else 0)
+    at = at[low | walks[at]]
+    joints = () if low else all_but(HANDS if "ab"[person] in score.gestures else ())
+    body = [stretch.known(person, at, poses[at], joints, kept=not low)] if len(at) else []
+    return softened(body) + ([] if low else stretch.known_way(way.only(~walks[np.asarray(way.frames)])))
 
 
 def _dancing_parts(stretch: Stretch, seed: int, joints: Sequence[Sequence[int]]) -> tuple[list[Part], dict[int, Way2D]]:
@@ -398,18 +404,9 @@ def _dancing_parts(stretch: Stretch, seed: int, joints: Sequence[Sequence[int]])
     at, every = stretch.every(EVENLY), np.union1d(np.arange(0, stretch.frames, EVENLY), [stretch.frames - 1])
     parts, ways = list[Part](), dict[int, Way2D]()
     for person, poses in enumerate(dancing(stretch.stand, stretch.frames, seed)):
-        parts.append(replace(stretch.known(person, at, poses[at], joints[person]), soft=True, free=True))
+        parts.append(stretch.draft(person, at, poses[at], joints[person]))
         ways[person] = Way2D(person, every.tolist(), poses[every, 0][:, [0, 2]], heading(poses[every]))
     return parts, ways
-
-
-def _statue_parts(person: int, stretch: Stretch) -> list[Part]:
-    """The poses of a person who stands like a statue."""
-    frames = stretch.every(_POSED, SETTLES if stretch.start else 0)
-    if not len(frames):
-        return []
-    pose = upright(stretch.halt(person), float(stretch.stand.headings[person]))
-    return [stretch.known(person, frames, np.repeat(pose[None], len(frames), axis=0))]
 
 
 def _stand(poses: Array) -> Standing:

@@ -145,9 +145,9 @@ def _with_hands(
     parts = []
     for person in (0, 1):
         course = stretch.course(person)
-        poses = np.stack([bending(course.places[t], float(course.headings[t]), lean) for t in at])
+        poses = bending(course.places[at], course.headings[at], lean)
         poses[:, wrists] = np.moveaxis(places[person], 0, 1)
-        parts.append(stretch.known(person, at, poses - poses[:, :1], joints))
+        parts.append(stretch.known(person, at, poses, joints))
     return parts
 
 
@@ -185,8 +185,8 @@ def pull_parts(puller: str, poses: Sequence[Pose], stretch: Stretch, *, both: bo
             meet, gap = other[_SHOULDERS[their]] + line / 2, _GAP * line / np.linalg.norm(line)
             one[_WRIST[mine]], other[_WRIST[their]] = meet + gap, meet - gap
         frames.append(t)
-        own.append(one - one[0])
-        theirs.append(other - other[0])
+        own.append(one)
+        theirs.append(other)
     if not frames:
         return []
     return [

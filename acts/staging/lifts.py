@@ -123,11 +123,10 @@ class Carrying:
             if person != self.carrier and self._waits:
                 kept &= np.asarray(way.frames) > 0  # where they begin on their feet
             if kept.any():
-                headings = None if way.headings is None else way.headings[kept]
-                frames = np.asarray(way.frames)[kept].tolist()
-                if person == self.carrier and headings is not None:
-                    headings = np.where(np.isfinite(headings), self.course.headings[frames], headings)
-                ways[person] = replace(way, frames=frames, places=way.places[kept], headings=headings)
+                own = ways[person] = way.only(kept)
+                if person == self.carrier and own.headings is not None:
+                    turned = np.where(np.isfinite(own.headings), self.course.headings[list(own.frames)], own.headings)
+                    ways[person] = replace(own, headings=turned)
         return ways
 
     def parts(self) -> list[KnownFrames]:

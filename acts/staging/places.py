@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion import FPS
 from motion.vectors import Array, wrapped
@@ -56,6 +57,11 @@ class Way2D:
     frames: Sequence[int]
     places: Array
     headings: Array | None
+
+    def only(self, kept: NDArray[np.bool_]) -> Way2D:
+        """The same at those of its frames (N,) that are kept."""
+        headings = None if self.headings is None else self.headings[kept]
+        return Way2D(self.person, np.asarray(self.frames)[kept].tolist(), self.places[kept], headings)
 
 
 @dataclass(frozen=True, eq=False)

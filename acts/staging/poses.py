@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from functools import cache
 
 import numpy as np
 
 from motion import SMPL22
 from motion.kinematics import forward_kinematics
 from motion.limbs import bent_towards
-from motion.transforms import heading
+from motion.transforms import heading, heading_matrix
 from motion.vectors import Array
 
 Turns = dict[str, Array]
@@ -63,9 +64,20 @@ STANDS: Mapping[str, float] = {"hip": -0.06, "knee": 0.12, "ankle": -0.06, "shou
 _FLIES: Mapping[str, float] = {"hip": -0.2, "knee": 0.4, "ankle": 0.45, "shoulder": 1.3, "elbow": 0.3, "spine": 0.0}
 
 
-def upright(place: Array, angle: float) -> Array:
-    """A person standing still: (22, 3) metres."""
-    return _on_floor(_pose_of(angle, STANDS)[None], place, angle)[0]
+def placed(poses: Array, places: Array, headings: Array | float) -> Array:
+    """Poses (…, 22, 3) around the origin that face +Z, at places (…, 2) with headings (…)."""
+    turned = poses @ np.swapaxes(heading_matrix(headings), -1, -2)
+    return np.asarray(turned + np.insert(np.asarray(places, dtype=float), 1, 0.0, axis=-1)[..., None, :])
+
+
+@cache
+def _standing() -> Array:
+    return _on_floor(_pose_of(0.0, STANDS)[None], np.zeros(2), 0.0)[0]
+
+
+def upright(places: Array, headings: Array | float) -> Array:
+    """People standing still at places (…, 2) with headings (…): (…, 22, 3) metres."""
+    return placed(_standing(), places, headings)
 
 
 def seated(place: Array, angle: float) -> Array:
@@ -81,12 +93,12 @@ def grounded(place: Array, angle: float) -> Array:
     return pose + (np.array([place[0], 0.0, place[1]]) + ahead - pose[list(TOES)].mean(axis=0)) * [1, 0, 1]
 
 
-def bending(place: Array, angle: float, lean: float = _BENT) -> Array:
-    """A person bent from the hips by so many radians: (22, 3) metres."""
-    return leaning(upright(place, angle), angle, lean)
+def bending(places: Array, headings: Array | float, lean: float = _BENT) -> Array:
+    """People (…, 22, 3) in metres who stand as :func:`upright` says, bent from the hips by so many radians."""
+    return leaning(upright(places, headings), headings, lean)
 
 
-def leaning(poses: Array, angle: float, lean: Array | float) -> Array:
+def leaning(poses: Array, angle: Array | float, lean: Array | float) -> Array:
     """Poses (…, 22, 3) with trunk, head and arms turned forward about the pelvis by so many radians (…)."""
     upper = [j for j in ALL if j not in LOWER or j == JOINT["spine1"]]
     moved, root = poses.copy(), poses[..., :1, :]
@@ -94,9 +106,10 @@ def leaning(poses: Array, angle: float, lean: Array | float) -> Array:
     return moved
 
 
-def _tilt(angle: float, lean: Array | float) -> Array:
+def _tilt(angle: Array | float, lean: Array | float) -> Array:
     """(…, 3, 3) what points (N, 3) are multiplied by to turn forward, for a heading, by so many radians (…)."""
-    return np.swapaxes(about(1, angle) @ about(0, lean) @ about(1, -angle), -1, -2)
+    turn = heading_matrix(angle)
+    return np.swapaxes(turn @ about(0, lean) @ np.swapaxes(turn, -1, -2), -1, -2)
 
 
 def stooping(place: Array, angle: float, share: float = 1.0) -> Array:

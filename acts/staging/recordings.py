@@ -22,7 +22,7 @@ from motion.transforms import heading, heading_matrix, mirrored
 from motion.vectors import Array
 
 from .places import Course, Standing, bearing, direction
-from .poses import JOINT, LOWER
+from .poses import JOINT, LOWER, placed
 from .window import Frames, late_by
 
 RATE = 15
@@ -99,6 +99,11 @@ def _kept(name: str) -> Mapping[str, Array]:
     """The recordings (T, …, 22, 3) of a file in metres at :data:`RATE`, by name."""
     with np.load(_FOLDER / f"{name}.npz", allow_pickle=False) as kept:
         return {each: kept[each].astype(float) / 1000 for each in sorted(kept.files)}
+
+
+def drawn(name: str) -> Array:
+    """A pose (22, 3) or several (N, 22, 3) that were drawn, in metres around the origin, facing +Z."""
+    return _kept("drawn")[name]
 
 
 @cache
@@ -324,11 +329,5 @@ def carried(carry: str, places: Array, headings: Array) -> tuple[Array, Array]:
         (N, 22, 3) metres in the world, with wrists where they hold on and elbows below, and (N, 22, 3) of the carrier,
         of which the trunk and the arms are meant.
     """
-    carrier, pose = (np.broadcast_to(each, (len(places), *each.shape)) for each in _kept("drawn")[carry])
+    carrier, pose = drawn(carry)
     return placed(pose, places, headings), placed(carrier, places, headings)
-
-
-def placed(poses: Array, place: Array, angle: float | Array) -> Array:
-    """Poses (N, 22, 3) around the origin that face +Z, at a place (2,) or (N, 2), with a heading or (N,) headings."""
-    turns = heading_matrix(np.broadcast_to(angle, len(poses)))
-    return np.einsum("nij,nkj->nki", turns, poses) + np.insert(np.atleast_2d(place), 1, 0.0, axis=1)[:, None]

@@ -16,7 +16,7 @@ from motion.transforms import heading_matrix
 from motion.vectors import Array
 
 from .places import Course
-from .poses import HANDS, JOINT, TRUNK, bending, upright
+from .poses import HANDS, JOINT, TRUNK, bending
 from .postures import DUCKING
 from .score import SIDES, Score, Strike
 from .window import KnownFrames, Stretch
@@ -125,7 +125,7 @@ def poses(bout: str, side: str, place: Array, other: Array) -> tuple[tuple[int, 
         other: (2,) of the other.
 
     Returns:
-        N frames, and (N, 22, 3) metres from the pelvis; only the trunk and the wrist of that side are meant.
+        N frames, and (N, 22, 3) metres, of which only the trunk and the wrist of that side are meant.
     """
     line = np.asarray(other) - place
     angle, sign = float(np.arctan2(line[0], line[1])), 1.0 if side == "left" else -1.0
@@ -146,17 +146,17 @@ def poses(bout: str, side: str, place: Array, other: Array) -> tuple[tuple[int, 
     else:
         landed[wrist] = landed[0] + turn @ (np.array(ahead) * [sign, 1.0, 1.0])
     after = drawn if ahead is None else ready(place, other)
-    return (-_DRAWN, -1, 1, _RECOVERS), np.stack([pose - pose[0] for pose in (drawn, landed, landed, after)])
+    return (-_DRAWN, -1, 1, _RECOVERS), np.stack([drawn, landed, landed, after])
 
 
 def ready(place: Array, other: Array, reach: Array = _READY) -> Array:
-    """A pose (22, 3) from the pelvis of a person with both hands ready, towards the other; places as above."""
+    """A pose (22, 3) of a person with both hands ready, towards the other; places as above."""
     line = np.asarray(other) - place
     angle = float(np.arctan2(line[0], line[1]))
     pose = bending(place, angle, _LEAN)
     for side, sign in (("left", 1.0), ("right", -1.0)):
         pose[JOINT[f"{side}_wrist"]] = pose[0] + heading_matrix(angle) @ (reach * [sign, 1.0, 1.0])
-    return pose - pose[0]
+    return pose
 
 
 def catching(place: Array, other: Array, *, up: bool = False) -> tuple[tuple[int, ...], Array]:
@@ -209,28 +209,21 @@ def strike_parts(struck: Strike, score: Score, stretch: Stretch) -> list[KnownFr
             person, list(known), np.stack(list(known.values())), [*TRUNK, *(JOINT[f"{side}_wrist"] for side in sides)]
         )
         for (person, sides), known in given.items()
-    ] + [*_rests(struck, after, courses, stretch), *_unwarned(struck, score, listed, stretch)]
+    ] + [*_rests(struck, after, stretch), *_unwarned(struck, score, listed, stretch)]
 
 
-def _rests(struck: Strike, after: Mapping[int, int], courses: Sequence[Course], stretch: Stretch) -> list[KnownFrames]:
+def _rests(struck: Strike, after: Mapping[int, int], stretch: Stretch) -> list[KnownFrames]:
     """The bodies of people once their last blow or throw is over, where the network would strike again.
 
     Args:
         struck: the blows of the beat.
         after: the last frame that is given of each person.
-        courses: of the two people.
         stretch: the beat.
     """
-    if struck.goes_on:
-        return []
-    parts = []
-    for person in {"ab".index(who) for who in struck.turns} & after.keys():
+    parts: list[KnownFrames] = []
+    for person in () if struck.goes_on else {"ab".index(who) for who in struck.turns} & after.keys():
         frames = stretch.shown(np.arange(after[person] + RESTS, stretch.frames, EVERY))
-        course = courses[person]
-        poses = [upright(course.places[frame], float(course.headings[frame])) for frame in frames]
-        if poses:
-            still = np.stack(poses)
-            parts.append(stretch.known(person, frames, still - still[:, :1], [*TRUNK, *HANDS]))
+        parts += stretch.still(person, frames, [*TRUNK, *HANDS])
     return parts
 
 
@@ -251,12 +244,7 @@ def _unwarned(struck: Strike, score: Score, listed: Sequence[Blow], stretch: Str
     if "ab"[person] in {*score.gestures, *score.changes, *score.limbs}:
         return []
     stop = stretch.frames if struck.bout == "slaps" else listed[-1].frame + 1
-    frames = stretch.shown(np.arange(RESTS if stretch.start else 0, stop, EVERY))
-    if not len(frames):
-        return []
-    course = stretch.course(person)
-    poses = np.stack([upright(course.places[t], float(course.headings[t])) for t in frames])
-    return [stretch.known(person, frames, poses - poses[:, :1], HANDS)]
+    return stretch.still(person, stretch.shown(np.arange(RESTS if stretch.start else 0, stop, EVERY)), HANDS)
 
 
 def _first(struck: Strike, score: Score, courses: Sequence[Course]) -> int:

@@ -12,11 +12,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from motion import FPS
-from motion.transforms import heading, heading_matrix
+from motion.transforms import heading, mirrored
 from motion.vectors import Array, unit
 
 from .places import Course
-from .poses import JOINT, LOWER, TRUNK, about, kneeling, leaning, upright
+from .poses import JOINT, LOWER, TRUNK, kneeling, leaning, placed, upright
+from .recordings import drawn
 from .score import SIDES, Touch
 from .window import KnownFrames, Stretch
 
@@ -49,13 +50,6 @@ _FLAT = 0.3
 """Metres between the heights of head and pelvis of a person who lies, at most."""
 BESIDE = 0.46
 """Metres between the pelvises of two people one of whom has an arm around the other or the head on their shoulder."""
-_RESTS, _WHISPERS = (0.2, 0.65), (0.34, 0.7)
-"""Radians to the side of a trunk, and further ones of the head, of a person whose head is on a shoulder, and of one who
-whispers."""
-_OWN_HAND = np.array([0.04, 0.1, 0.22])
-"""Metres from their pelvis to that side, up and ahead, of the wrist on that side: clear of the other's body."""
-_AT_MOUTH = np.array([0.05, -0.1, 0.16])
-"""The same from the head of a person who whispers, of the other hand, whose fingers are before the mouth."""
 _AROUND = (0.13, 0.06, 0.04)
 """Metres behind, inside of and under the other's far shoulder of a wrist whose arm is around them."""
 LOWEST = 0.55
@@ -91,9 +85,11 @@ def beside(pose: Array, place: Array) -> float | None:
 
 def touching(touch: Touch, pose: Array, place: Array, angle: float) -> Array:
     """The pose (22, 3) of a person at a place (2,) who leans, or kneels down, to the other's pose, arms hanging."""
+    if touch.beside and not touch.sides:  # the head on the other's shoulder, or at their ear
+        leans = drawn("whispers" if touch.part == "head" else "rests")  # to the left
+        return placed(leans if inner_side(pose, place, angle) == SIDES[0] else mirrored(leans), place, angle)
     if touch.beside:
-        own = upright(place, angle)
-        return own if touch.sides else _tilted(pose, own, angle, whispers=touch.part == "head")
+        return upright(place, angle)
     make = kneeling if kneels(touch, pose) else upright
     return leaning(make(place, angle), angle, lean(touch, pose))
 
@@ -188,26 +184,6 @@ def arms_beside(touch: Touch, other: Array, place: Array, angle: float) -> tuple
     return SIDES if whispers else (inner_side(other, place, angle),)
 
 
-def _tilted(other: Array, own: Array, angle: float, *, whispers: bool = False) -> Array:
-    """A pose (22, 3) whose trunk and head are tilted to the side where the other (22, 3) is.
-
-    The hand on that side is before the belly; of a person who whispers the other hand is before the mouth.
-    """
-    side = inner_side(other, own[0][[0, 2]], angle)
-    sign = -1.0 if side == SIDES[0] else 1.0
-    tilted = own.copy()
-    neck, head = JOINT["neck"], JOINT["head"]
-    for root, moved, tilt in zip((0, neck), (list(TRUNK), [head]), _WHISPERS if whispers else _RESTS, strict=True):
-        turn = heading_matrix(angle) @ about(2, sign * tilt) @ heading_matrix(-angle)
-        tilted[moved] = tilted[root] + (tilted[moved] - tilted[root]) @ turn.T
-    inner = SIDES.index(side)
-    hands = [(inner, 0, _OWN_HAND), *([(1 - inner, head, _AT_MOUTH)] if whispers else [])]
-    for hand, root, at in hands:
-        place = heading_matrix(angle) @ (at * [-sign, 1.0, 1.0])
-        tilted[JOINT[f"{SIDES[hand]}_wrist"]] = tilted[root] + place
-    return tilted
-
-
 def _around(other: Array, shoulder: Array) -> Array:
     """The place (3,) of a wrist on the other's (22, 3) far shoulder, behind them, of an arm from a shoulder (3,)."""
     behind, inside, under = _AROUND
@@ -261,16 +237,13 @@ def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> K
         target = None if touch.fells else posed.get(1 - giver)
         if target is None:
             target = upright(other.places[frame], float(other.headings[frame]))
-        pose = _reaching(touch, target, own, frame, back)
-        pose -= 0.0 if down else pose[0].copy()
         kept.append(frame)
-        poses.append(pose)
+        poses.append(_reaching(touch, target, own, frame, back))
     comes = range(REACHES, first - REACHES, REACHES) if touch.beside and stretch.start else range(0)
     for frame in (*comes, *_rests(touch, at, frames)):
         if stretch.shows(frame):
             kept.append(frame)
-            pose = upright(own.places[frame], float(own.headings[frame]))
-            poses.append(pose - pose[0])
+            poses.append(upright(own.places[frame], float(own.headings[frame])))
     if not kept:
         return None
     order = np.argsort(kept)

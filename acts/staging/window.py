@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from motion.transforms import Placement
 from motion.vectors import Array
 
 from .places import HALT, Course, Standing, Way2D
+from .poses import upright
 
 Frames = NDArray[np.integer]
 
@@ -169,6 +170,15 @@ class Stretch:
     ) -> KnownFrames:
         """A person's poses (N, 22, 3) in the scene's world at some frames, or some joints of them, as a part."""
         return KnownFrames(person, self.in_window(at), self.placement.to_network(poses), joints, kept)
+
+    def draft(self, person: int, at: Frames, poses: Array, joints: Sequence[int] = ()) -> KnownFrames:
+        """The same as a draft to which no network is held."""
+        return replace(self.known(person, at, poses, joints), soft=True, free=True)
+
+    def still(self, person: int, at: Frames, joints: Sequence[int]) -> list[KnownFrames]:
+        """Some joints of a person who stands upright on their course at frames (N,), as a part, if there are any."""
+        course = self.course(person)
+        return [self.known(person, at, upright(course.places[at], course.headings[at]), joints)] if len(at) else []
 
     def known_way(self, way: Way2D) -> list[Part]:
         """What falls into the window of a way."""
