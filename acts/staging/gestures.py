@@ -22,7 +22,7 @@ from motion.limbs import solve_two_bones
 from motion.transforms import heading_matrix
 from motion.vectors import Array, unit
 
-from .places import Way2D
+from .places import EVENLY, Way2D
 from .poses import JOINT, upright
 from .recordings import Performance, performance
 from .score import SIDES, Move, Score
@@ -132,8 +132,6 @@ _SHOWS = 1.0
 """Seconds for which a hand is up that sinks again, at least."""
 FIRST = 15
 """Frames of a beat before a hand is given."""
-OFTEN = 4
-"""Frames between two given places of a hand."""
 ARRIVED = 0.15
 """Metres from where a person stays, at most, at which their hands begin with a thing."""
 
@@ -210,7 +208,7 @@ def hand_parts(
         if gesture is None or not (person in stretch.ways or person in posed):
             continue  # the network makes the gesture
         begins = 0 if person in posed and person not in stretch.ways else FIRST
-        at: Frames = np.arange(begins, stretch.frames, OFTEN)
+        at: Frames = np.arange(begins, stretch.frames, EVENLY)
         if (person, "thing") in ways and len(at):
             at = _there(stretch.course(person).places, at)
         if not len(at):

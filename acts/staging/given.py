@@ -31,17 +31,15 @@ from .recordings import Performance, dancing, performance, standing_by, walking
 from .score import Move, Score, Touch, at_start, goes
 from .strikes import strike_parts
 from .touches import touch_parts
-from .window import SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
+from .window import GETS_DOWN, SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
 
-_POSED = 4
-"""Frames between two poses of a statue: as many as between the network's knots, of which others would waver."""
 _DRAFTED = 6
 """Frames between two poses of a bystander."""
 _RESTS, _STAYS, _FACES = 15, 0.03, 0.2
 """Frames before and after one at which somebody on their way rests, and the metres and radians that they may move."""
 _FEET = tuple(JOINT[f"{side}_{joint}"] for side in ("left", "right") for joint in ("ankle", "foot"))
-_LOW, _GETS_DOWN = ("crawls", "on the knees"), 40
-"""Gaits of people who are low, and the frames in which somebody gets down for one."""
+_LOW = ("crawls", "on the knees")
+"""Gaits of people who are low."""
 _PLACED = 30
 """Frames between two places of somebody whose poses are a draft."""
 
@@ -233,7 +231,7 @@ class _Beat:
                 parts += limb_parts(person, score, stretch, seed)
                 posed[person] = stands
             elif up and who in score.idle & score.frozen:
-                if len(frames := stretch.every(_POSED, SETTLES if self.start else 0)):
+                if len(frames := stretch.every(EVENLY, SETTLES if self.start else 0)):
                     still = upright(np.tile(stretch.halt(person), (len(frames), 1)), stretch.stand.headings[person])
                     parts.append(stretch.known(person, frames, still))
             elif up and who in score.idle:
@@ -345,7 +343,7 @@ def _bystander_parts(
 
     Of somebody with a recorded gesture the other joints are those of the hands that make it, which the plan may hold.
     """
-    spacing, settles = (_POSED, SETTLES // 2) if gesture else (_DRAFTED, SETTLES)
+    spacing, settles = (EVENLY, SETTLES // 2) if gesture else (_DRAFTED, SETTLES)
     frames = stretch.every(spacing, settles if stretch.start else 0)
     if not len(frames):
         return []
@@ -392,7 +390,7 @@ def _gait_parts(gait: str, way: Way2D, down: Collection[int], score: Score, stre
     """
     person, low = way.person, gait in _LOW
     walks, poses = walking(stretch.course(person), 2 * seed + person, gait)
-    at = stretch.every(EVENLY, _GETS_DOWN if low and stretch.start and person not in down else 0)
+    at = stretch.every(EVENLY, GETS_DOWN if low and stretch.start and person not in down else 0)
     at = at[low | walks[at]]
     joints = () if low else all_but(HANDS if "ab"[person] in score.gestures else ())
     body = [stretch.known(person, at, poses[at], joints, kept=not low)] if len(at) else []

@@ -12,8 +12,9 @@ import numpy as np
 
 from motion.vectors import Array
 
+from .places import EVENLY
 from .poses import JOINT, TRUNK, UPRIGHT, Pose, bending
-from .window import Frames, KnownFrames, Stretch
+from .window import OFTEN, REACHES, Frames, KnownFrames, Stretch
 
 
 @dataclass(frozen=True)
@@ -50,12 +51,8 @@ _TOGETHER, _GROWS = 0.8, 0.6
 """Seconds in which the two come together before it, and in which it grows to its length."""
 _NEARLY = 0.2
 """Metres more than in a hold at which two who begin in it stand."""
-_REACHES = 12
-"""Frames in which a hand is brought to the hold."""
 _HIPS = [JOINT["left_hip"], JOINT["right_hip"]]
 _WRISTS = [JOINT["left_wrist"], JOINT["right_wrist"]]
-_OFTEN = 4
-"""Frames between two given places of hands that pull."""
 _HELD = 45
 """Frames before somebody is up in which their hand is held."""
 _ARM = 0.48
@@ -121,7 +118,7 @@ def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:
     courses = [stretch.course(person) for person in (0, 1)]
     apart = float(np.linalg.norm(np.subtract(*stretch.stand.places)))
     begun = stretch.start == 0 and apart < HOLDS[hold].apart + _NEARLY  # a story that begins in the hold
-    at = stretch.shown(np.arange(0 if begun else _REACHES, stretch.frames, 3))
+    at = stretch.shown(np.arange(0 if begun else REACHES, stretch.frames, OFTEN))
     if not len(at):
         return []
     wrists = joined(hold, np.stack([course.places[at] for course in courses]))
@@ -130,7 +127,7 @@ def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:
 
 def twirl_parts(stretch: Stretch) -> list[KnownFrames]:
     """The bodies and joined right hands of two people, one of whom turns under them."""
-    at = stretch.shown(np.arange(_REACHES, stretch.frames - _REACHES, 3))
+    at = stretch.shown(np.arange(REACHES, stretch.frames - REACHES, OFTEN))
     if not len(at):
         return []
     hands = raised(np.stack([stretch.course(person).places[at] for person in (0, 1)]))
@@ -169,7 +166,7 @@ def pull_parts(puller: str, poses: Sequence[Pose], stretch: Stretch, *, both: bo
     course = stretch.course(person)
     frames, own, theirs = [], [], []
     known, bodies = np.array([frame for frame, _ in poses]), np.stack([pose for _, pose in poses])
-    for frame in range(max(down[-1] - _HELD, known[0]), up[0] + 1, _OFTEN):
+    for frame in range(max(down[-1] - _HELD, known[0]), up[0] + 1, EVENLY):
         if not stretch.shows(frame - stretch.start):
             continue
         last = int(np.searchsorted(known, frame).clip(1, len(known) - 1))

@@ -24,10 +24,8 @@ from .places import Course, Way2D, eased
 from .poses import JOINT, LOWER, TRUNK, all_but, upright
 from .recordings import carried
 from .score import Lift
-from .window import KnownFrames, Stretch
+from .window import OFTEN, KnownFrames, Stretch
 
-OFTEN = 3
-"""Frames between two given poses."""
 RISES = 16
 """Frames that picking a person up takes, and setting them down."""
 LONG = 75

@@ -157,7 +157,7 @@ MOST = 3.2
 TURNING = 0.9
 """Seconds of a half turn."""
 EVENLY = 4
-"""Frames between two given places of somebody who walks: at every knot of the network, which otherwise surges."""
+"""Frames between two given places or poses: at every knot of the network, which otherwise surges or wavers."""
 EASE = 0.5
 """Seconds in which a walk gets up its speed, and slows down again."""
 EVERY = 30

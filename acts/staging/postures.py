@@ -18,7 +18,7 @@ from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 from motion.vectors import Array
 
-from .places import HALT, Standing
+from .places import EVENLY, HALT, Standing
 from .poses import (
     FLAT,
     HANDS,
@@ -42,12 +42,8 @@ from .poses import (
 )
 from .recordings import on_all_fours
 from .score import Change, Score, at_start
-from .window import Part, Stretch
+from .window import GETS_DOWN, Part, Stretch
 
-HELD = 4
-"""Frames between two poses of a person who keeps a posture: as many as between the network's knots."""
-SETTLING = 40
-"""Frames in which somebody sits down, falls or gets up."""
 RISING = 54
 """Frames in which somebody gets up from the ground."""
 LYING_DOWN = 84
@@ -125,7 +121,7 @@ def postures(
         poses |= on_the_way
         now, pose, begins = change.posture, _MAKES[change.posture](place, angle), ends
     if own and now == "stands":
-        poses |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop) if jumps else stop)
+        poses |= _stays(pose, begins, min(begins + 2 * EVENLY + 1, stop) if jumps else stop)
     elif now != "stands":
         poses |= _stays(pose, begins, stop)
     if now == "stands":
@@ -138,7 +134,7 @@ def _in_between(poses: Sequence[Pose]) -> Iterator[Pose]:
     """Poses on the way down, up and from one low pose to another, on which the network would rise or sink at will."""
     for (first, pose), (last, then) in pairwise(poses):
         if min(pose[0, 1], then[0, 1]) <= UPRIGHT:
-            for frame in range(first + HELD, last, HELD):
+            for frame in range(first + EVENLY, last, EVENLY):
                 yield frame, pose + float(minimum_jerk((frame - first) / (last - first))) * (then - pose)
 
 
@@ -150,15 +146,15 @@ def _on_the_way(
     if now in _LOW and change.posture == "stands":
         ends = min(at + RISING, stop - 1)
         return ends, {at + round(share * (ends - at)): pose for share, pose in rising(place, angle, lies=lies)}
-    ends = min(at + SETTLING, stop - 1)
+    ends = min(at + GETS_DOWN, stop - 1)
     if {now, change.posture} == {"bends down", "stands"}:
-        shares = minimum_jerk(np.arange(HELD, ends - at, HELD) / (ends - at))
+        shares = minimum_jerk(np.arange(EVENLY, ends - at, EVENLY) / (ends - at))
         down = shares if change.posture == "bends down" else 1 - shares
-        return ends, {at + HELD * (i + 1): stooping(place, angle, float(share)) for i, share in enumerate(down)}
+        return ends, {at + EVENLY * (i + 1): stooping(place, angle, float(share)) for i, share in enumerate(down)}
     falls = lies and not change.gently
     if now != "stands" or change.posture not in _LOW or not (change.gently or falls):
         return ends, {}
-    ends = min(at + (SETTLING if falls else LYING_DOWN if lies else RISING), stop - 1)
+    ends = min(at + (GETS_DOWN if falls else LYING_DOWN if lies else RISING), stop - 1)
     pace = _DROPS if falls else 1.0
     on_the_way = reversed(rising(place, angle, lies=lies))
     return ends, {at + round((1 - share) ** pace * (ends - at)): pose for share, pose in on_the_way}
@@ -222,7 +218,7 @@ def posture_joints(
 
 
 def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:
-    return dict.fromkeys({*range(start, stop, HELD), max(start, stop - 1)}, pose)
+    return dict.fromkeys({*range(start, stop, EVENLY), max(start, stop - 1)}, pose)
 
 
 def _jumping(jumps: Jump, start: int, stop: int, place: Array, angle: float) -> Iterator[Pose]:

@@ -15,13 +15,13 @@ import numpy as np
 from motion.transforms import heading_matrix
 from motion.vectors import Array
 
+from .gestures import Place
 from .places import Course
 from .poses import HANDS, JOINT, TRUNK, bending
 from .postures import DUCKING
 from .score import SIDES, Score, Strike
 from .window import KnownFrames, Stretch
 
-Place = tuple[float, float, float]
 _Given = tuple[int, tuple[str, ...], tuple[tuple[int, ...], Array]]
 """A person, their hands, and frames with the poses at them."""
 

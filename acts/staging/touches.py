@@ -19,7 +19,7 @@ from .places import Course
 from .poses import JOINT, LOWER, TRUNK, kneeling, leaning, placed, upright
 from .recordings import drawn
 from .score import SIDES, Touch
-from .window import KnownFrames, Stretch
+from .window import GETS_DOWN, REACHES, KnownFrames, Stretch
 
 _JOINTS = {
     "head": "head",
@@ -54,8 +54,6 @@ _AROUND = (0.13, 0.06, 0.04)
 """Metres behind, inside of and under the other's far shoulder of a wrist whose arm is around them."""
 LOWEST = 0.55
 """Height in metres of the lowest place that somebody on their feet reaches."""
-REACHES = 12
-"""Frames in which a hand is brought to the place that it touches."""
 HELD = 1.6
 """Seconds that a hand stays, where the beat is long enough."""
 BEAT = 20
@@ -64,8 +62,6 @@ TAKEN_BACK = 0.2
 """Metres by which a hand is taken back between two pats."""
 LOWERS = 24
 """Frames in which a hand that has patted somebody's back goes down."""
-KNEELS = 40
-"""Frames in which somebody kneels down to touch what is low."""
 
 
 def kneels(touch: Touch, pose: Array) -> bool:
@@ -220,7 +216,7 @@ def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> K
     down = kneels(touch, posed.get(1 - giver, upright(np.zeros(2), 0.0)))
     first = _since(np.abs(own.headings - own.headings[-1]) > 0.2) if touch.beside else 0
     first = max(first, _arrival(own), _arrival(other) if 1 - giver in stretch.ways else 0)
-    first += KNEELS if down else REACHES
+    first += GETS_DOWN if down else REACHES
     first = max(first, round(0.6 * frames)) if touch.late else first
     last = min(frames, _leaving(other, first))
     at = _moments(touch, first, last)
