@@ -32,7 +32,7 @@ ones, and its feet are fast there."""
 OFTEN = 3
 """Frames between two poses of a body that moves: closer than the network's knots, of which others would waver."""
 SETTLES, GETS_DOWN, REACHES = 24, 40, 12
-"""Frames in which somebody changes to another stance, gets down or up, and brings a hand to what it touches or holds."""
+"""Frames in which somebody changes to another stance, gets down or up, and brings a hand to what it holds."""
 LATE = 0.4
 """Seconds by which somebody begins later than they could, at most."""
 SHORT = 120
