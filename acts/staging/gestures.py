@@ -112,8 +112,6 @@ def wrist(name: str, side: str, seconds: Array, towards: Array) -> Array:
         (N, 3) metres from the pelvis.
     """
     stands, stroke = upright(np.zeros(2), 0.0), GESTURES[name]
-    if name == "lowers":
-        return np.tile(stands[JOINT[f"{side}_wrist"]] - stands[0], (len(seconds), 1))
     way = stroke.way(1.0 if side == "left" else -1.0, seconds) + _TOWARDS.get(name, 0.0) * towards
     if name == "swings":
         angle = _SWUNG * np.sin(2 * np.pi * stroke.rate * np.asarray(seconds))
