@@ -19,14 +19,15 @@ from numpy.typing import NDArray
 
 from acts.shapes import Figure
 from motion import FPS
+from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 from motion.vectors import Array
 
 from .figure_floor import grounded_poses
 from .places import Way2D
-from .poses import ALL, HANDS, JOINT, Pose, all_but
+from .poses import ALL, HANDS, JOINT, LOWER, Pose, all_but
 from .postures import RISING, posture_joints, postures
-from .recordings import LEGS, has_takes, performing
+from .recordings import BLENDS, LEGS, has_takes, performing, standing_by
 from .score import Change, Score
 from .window import OFTEN, SETTLES, Part, Stretch, late_by
 
@@ -53,6 +54,8 @@ DOWN = 0.35
 """Height in metres of the pelvis of a person on the ground, who has to get up before a figure."""
 DANCES: Final = "dances"
 """The figure that the network may dance as it likes, if not in time with another."""
+JUMPS: Final = "jumps"
+"""The figure of which only the legs are given."""
 SHORTEST = 20
 """Frames for which a figure is begun, at least."""
 _SEEN = 6
@@ -97,10 +100,7 @@ def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
     Returns:
         (frames, 22, 3) metres; the body is on the floor, and what stands on it does not glide.
     """
-    length = frames / FPS
-    late = min(figure.late, length / 4)
-    times, rows = _scheduled(figures()[figure.figure], figure.times, length - late)
-    times[1:] += late
+    times, rows = _scheduled(figure, frames / FPS)
     if figure.mirrored:
         rows = _mirrored(rows)
     at = np.arange(frames) / FPS
@@ -110,9 +110,10 @@ def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
     return grounded_poses(dict(zip(NAMES, course.T, strict=True)), place, angle)
 
 
-def _scheduled(course: Keys, times: int, length: float) -> tuple[Array, Array]:
+def _scheduled(figure: Figure, length: float) -> tuple[Array, Array]:
     """Seconds (N,) of a beat and the angles (N, angles) at them, beginning and ending with standing."""
-    room = max(length - BEGINS - RESTS, 0.1)
+    course, times, late = figures()[figure.figure], figure.times, min(figure.late, length / 4)
+    room = max(length - late - BEGINS - RESTS, 0.1)
     cycle = float(course.again[0].sum())
     frame = float(course.into[0].sum() + course.out[0].sum())
     reps = 0
@@ -126,7 +127,7 @@ def _scheduled(course: Keys, times: int, length: float) -> tuple[Array, Array]:
         steps, rows = _cut(steps, rows, room)
         pace = 1.0
     stands = _row({}, {"stand": {}})
-    at = BEGINS + np.cumsum(np.concatenate([[0.0], steps * min(pace, SLOWEST)]))
+    at = late + BEGINS + np.cumsum(np.concatenate([[0.0], steps * min(pace, SLOWEST)]))
     return np.concatenate([[0.0], at + 1e-3]), np.concatenate([stands, stands, rows])
 
 
@@ -197,7 +198,7 @@ def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Arra
     body, bows = all_but(HANDS) if busy else ALL, figure.figure.startswith("bows")
     if bows:  # the network has the legs
         body = [joint for joint in body if joint == JOINT["pelvis"] or joint not in LEGS]
-    part = beat.known(person, at, poses, body, kept=not bows)
+    part = beat.known(person, at, poses, LOWER if figure.figure == JUMPS else body, kept=not bows)
     if figure.in_time or figure.figure != DANCES:
         return [*parts, part]
     way = Way2D(person, at.tolist(), poses[:, 0][:, [0, 2]], heading(poses))
@@ -223,9 +224,21 @@ def _figure(score: Score, person: int, beat: Stretch, first: int, seed: int) -> 
         own = seed if figure.in_time else 2 * seed + person
         poses = performing(figure, beat.halt(person), angle, count, own)
     else:
-        poses = figured(figure, beat.halt(person), angle, count)
+        poses = _rested(figured(figure, beat.halt(person), angle, count), figure, first + beat.start, 2 * seed + person)
     frames = np.union1d(np.arange(0, count, OFTEN), [count - 1])
     return frames + first, poses[frames]
+
+
+def _rested(poses: Array, figure: Figure, start: int, seed: int) -> Array:
+    """A figure (T, 22, 3), from a frame of the scene on, of somebody who stands by before it and after it."""
+    seconds = np.arange(len(poses)) / FPS
+    times, _ = _scheduled(figure, len(poses) / FPS)
+    share = minimum_jerk((seconds - times[1] + BEGINS) / BLENDS) * minimum_jerk((times[-1] + BLENDS - seconds) / BLENDS)
+    last = (seconds > times[1:].mean())[:, None]
+    places = np.where(last, poses[-1, 0, [0, 2]], poses[0, 0, [0, 2]])
+    angles = np.where(last[:, 0], heading(poses[-1:]), heading(poses[:1]))
+    stands = standing_by(places, angles, np.arange(len(poses)) + start, seed)
+    return np.asarray(stands + share[:, None, None] * (poses - stands))
 
 
 def _getting_up(scores: Sequence[Score], person: int, beat: Stretch, last: Array) -> list[Pose]:

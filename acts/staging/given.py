@@ -213,8 +213,7 @@ class _Beat:
     def on_the_spot(self, moves: Sequence[Move], stretch: Stretch) -> tuple[list[Part], dict[int, Array]]:
         """The parts of people who stay where they are, and a pose (22, 3) of those whose hands are still free.
 
-        A figure comes before limbs, these before standing by, and that before a posture. Who stands by has a place, and
-        no pose. A jump is never a draft: of one, the network's feet stay on the floor.
+        A figure comes before limbs, these before standing by, and that before a posture. Who stands by has no pose.
         """
         score, seed = self.score, self.story.seed
         gone = _gone(moves)
@@ -245,8 +244,7 @@ class _Beat:
                 poses = self._postures(person, stretch)
                 if len(poses) > 1:
                     posed[person] = poses[-1][1]
-                posture = posture_parts(poses, person, score, stretch, self.window.tail(self.story.edges[-1]))
-                parts += posture if who in score.jumps else softened(posture)
+                parts += softened(posture_parts(poses, person, score, stretch, self.window.tail(self.story.edges[-1])))
         return parts, posed
 
     def on_the_way(

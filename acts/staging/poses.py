@@ -1,4 +1,4 @@
-"""Poses of a body that stands, sits, kneels, crouches, bends down, lies or jumps, by the angles of its joints."""
+"""Poses of a body that stands, sits, kneels, crouches, bends down or lies, by the angles of its joints."""
 
 from __future__ import annotations
 
@@ -50,7 +50,6 @@ def all_but(free: Collection[int]) -> list[int]:
 
 _SITS: Mapping[str, float] = {"hip": -1.45, "knee": 1.5, "ankle": -0.05, "shoulder": 1.2, "elbow": 0.6, "spine": 0.08}
 _CROUCHES: Mapping[str, float] = {"hip": -1.75, "knee": 2.2, "ankle": -0.5, "shoulder": 1.2, "elbow": 0.5, "spine": 0.2}
-_BENDS: Mapping[str, float] = {"hip": -0.6, "knee": 0.95, "ankle": -0.38, "shoulder": 1.2, "elbow": 0.3, "spine": 0.1}
 _STOOPS: Mapping[str, float] = {"hip": -0.7, "knee": 0.9, "ankle": -0.2, "shoulder": 1.4, "elbow": 0.3, "spine": 0.05}
 _LIES: Mapping[str, float] = {"hip": -0.12, "knee": 0.25, "ankle": 0.4, "shoulder": 0.9, "elbow": 0.2, "spine": 0.0}
 _BELLY, _ELBOW_LIES = (-0.03, 0.14, -0.19), (-1.0, -0.6, 0.2)
@@ -61,7 +60,6 @@ _STOOPED = 1.6
 _BENT = 0.9
 """Radians of a bend from the hips."""
 STANDS: Mapping[str, float] = {"hip": -0.06, "knee": 0.12, "ankle": -0.06, "shoulder": 1.4, "elbow": 0.3, "spine": 0.0}
-_FLIES: Mapping[str, float] = {"hip": -0.2, "knee": 0.4, "ankle": 0.45, "shoulder": 1.3, "elbow": 0.3, "spine": 0.0}
 
 
 def placed(poses: Array, places: Array, headings: Array | float) -> Array:
@@ -182,22 +180,6 @@ def rising(place: Array, angle: float, *, lies: bool) -> Sequence[tuple[float, A
         return ((0.6, crouching(place, angle)),)
     up = [(0.45 * share, _reclining(place, angle, 1 - share)) for share in (0.25, 0.5, 0.75, 1.0)]
     return (*up, (0.75, crouching(place, angle)))
-
-
-def leaping(place: Array, angle: float, rise: float = 0.22) -> Sequence[tuple[float, Array]]:
-    """A jump on the spot as poses (22, 3) in metres, with their seconds from its highest moment.
-
-    It is in the air as long as a body in free fall.
-
-    Args:
-        place: (2,) x and z of the pelvis in metres.
-        angle: heading in radians from +Z towards +X.
-        rise: metres by which the feet leave the floor.
-    """
-    up = (2 * rise / 9.81) ** 0.5
-    bent = _on_floor(_pose_of(angle, _BENDS)[None], place, angle)[0]
-    high = _on_floor(_pose_of(angle, _FLIES)[None], place, angle)[0] + np.array([0.0, rise, 0.0])
-    return ((-up - 0.23, bent), (0.0, high), (up + 0.2, bent), (up + 0.6, upright(place, angle)))
 
 
 def _pose_of(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:

@@ -1,4 +1,4 @@
-"""Postures and jumps: people who sit, kneel, crouch or lie down in a story and stay so until they get up.
+"""Postures: people who sit, kneel, crouch or lie down in a story and stay so until they get up.
 
 A network that was trained on people who sit down and get up again does not leave them seated. Their pelvis and legs are
 given, and the trunk and head of those who lie or bend down.
@@ -12,7 +12,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from acts.shapes import Jump
 from motion import FPS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading
@@ -33,7 +32,6 @@ from .poses import (
     crouching,
     grounded,
     kneeling,
-    leaping,
     lying,
     rising,
     seated,
@@ -61,8 +59,6 @@ FOLDS = 18
 _KNEELS = 0.3
 """Height in metres of the pelvis above which a bent person's arms reach down to the floor."""
 _HEAD = JOINT["head"]
-LEAP = 36
-"""Frames from the highest moment of a jump to that of the next."""
 _LOW = ("lies", "sits on the ground")
 """Postures from which people sit up and get their feet under them before they stand."""
 _MAKES: Mapping[str, Callable[[Array, float], Array]] = {
@@ -95,10 +91,8 @@ def postures(
     own = [change for change in score.changes.get(who, ()) if not change.already]
     if last is not None and now != "stands" and last[0, 1] > UPRIGHT:  # as in a given motion
         now, own = "stands", [Change.model_validate({"posture": now}), *own]
-    jumps = score.jumps.get(who)
-    if now == "stands" and not own and not jumps:
-        others = [*score.changes, *score.jumps]
-        return [(start, upright(*_place(person, stand, None)))] if last is None and others else []
+    if now == "stands" and not own:
+        return [(start, upright(*_place(person, stand, None)))] if last is None and score.changes else []
     place, angle = _place(person, stand, last)
     if last is None and now == "lies":  # across the other's way, and not with the feet towards them
         angle += math.pi / 2
@@ -120,12 +114,7 @@ def postures(
         ends, on_the_way = _on_the_way(now, change, at, stop, place, angle)
         poses |= on_the_way
         now, pose, begins = change.posture, _MAKES[change.posture](place, angle), ends
-    if own and now == "stands":
-        poses |= _stays(pose, begins, min(begins + 2 * EVENLY + 1, stop) if jumps else stop)
-    elif now != "stands":
-        poses |= _stays(pose, begins, stop)
-    if now == "stands":
-        poses |= dict(_jumping(jumps, start, stop, place, angle)) if jumps else {}
+    poses |= _stays(pose, begins, stop)
     listed = [(frame, poses[frame]) for frame in sorted(poses) if start <= frame < stop]
     return sorted([*listed, *_in_between(listed)], key=lambda pose: pose[0])
 
@@ -219,14 +208,6 @@ def posture_joints(
 
 def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:
     return dict.fromkeys({*range(start, stop, EVENLY), max(start, stop - 1)}, pose)
-
-
-def _jumping(jumps: Jump, start: int, stop: int, place: Array, angle: float) -> Iterator[Pose]:
-    """The poses of so many jumps, the first of them a second after the beat begins."""
-    top = start + min(FPS, (stop - start) // 2)
-    for i in range(jumps.times):
-        for seconds, pose in leaping(place, angle):
-            yield round(top + i * LEAP + seconds * FPS), pose
 
 
 def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, float]:

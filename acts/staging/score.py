@@ -13,7 +13,7 @@ from typing import Literal
 
 from acts import shapes
 from acts.plan import other_of
-from acts.shapes import Figure, Gesture, Jump, Limb
+from acts.shapes import Figure, Gesture, Limb
 
 SIDES = ("left", "right")
 Way = Literal[
@@ -178,7 +178,6 @@ class Score:
         changes: of posture in order, by person.
         limbs: legs, trunk and head that move by themselves, by person.
         figures: what whole bodies do on the spot, by person.
-        jumps: by person.
         on_feet: those who do what needs legs.
         loose: those who do nothing with their hands: they walk, sit, jump or stand by.
         side: how the two are, and stay, to each other: "beside", "back to back", or "" for neither.
@@ -204,7 +203,6 @@ class Score:
     changes: Mapping[str, tuple[Change, ...]] = field(default_factory=dict)
     limbs: Mapping[str, tuple[Limb, ...]] = field(default_factory=dict)
     figures: Mapping[str, Figure] = field(default_factory=dict)
-    jumps: Mapping[str, Jump] = field(default_factory=dict)
     on_feet: frozenset[str] = frozenset()
     loose: frozenset[str] = frozenset()
     side: str = ""
@@ -216,7 +214,7 @@ class Score:
     @property
     def is_planned(self) -> bool:
         """True if people go somewhere, stand by, sit, kneel, lie down, jump or touch."""
-        bodies = (self.touch, self.changes, self.jumps, self.limbs, self.figures)
+        bodies = (self.touch, self.changes, self.limbs, self.figures)
         return goes(self.moves) or self.has_places or any(bodies) or bool(self.idle or self.gesturing)
 
     @property
@@ -228,7 +226,7 @@ class Score:
     def going(self) -> set[str]:
         """The people who walk, jump, dance or the like."""
         going = {move.person for move in self.moves if move.way not in IN_PLACE}
-        return going | self.on_feet | set(self.jumps) | set(self.figures)
+        return going | self.on_feet | set(self.figures)
 
     @property
     def joined(self) -> bool:

@@ -31,7 +31,7 @@ from .act_kinds import (
     strike_of,
     walks,
 )
-from .figures import DANCES
+from .figures import DANCES, JUMPS
 from .gestures import GESTURES
 from .holds import COUPLE
 from .moves import (
@@ -98,7 +98,6 @@ class _Stage:
         self.moves: list[Move] = []
         self.gestures: dict[str, shapes.Gesture] = {}
         self.changes: dict[str, tuple[Change, ...]] = {}
-        self.jumps: dict[str, shapes.Jump] = {}
         self.limbs: dict[str, tuple[shapes.Limb, ...]] = {}
         self.figures: dict[str, shapes.Figure] = {}
         self.touch: Touch | None = None
@@ -142,7 +141,7 @@ class _Stage:
             moves=moves,
             idle=idle,
             frozen=frozenset(self.frozen),
-            gesturing=waving - self.changes.keys() - self.jumps.keys() - self.figures.keys(),
+            gesturing=waving - self.changes.keys() - self.figures.keys(),
             gestures=self.gestures,
             touch=self.touch,
             hold=self.hold,
@@ -154,7 +153,6 @@ class _Stage:
             changes=self.changes,
             limbs=self.limbs,
             figures=self.figures,
-            jumps=self.jumps,
             linked=self.linked or any(move.linked for move in moves),
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
             loose=free - self.gestures.keys() - self.limbs.keys(),
@@ -204,7 +202,7 @@ class _Stage:
                 self.figures |= dict.fromkeys(people, figure_of(act, shape))
             case shapes.Jump():
                 times = act.times or (max(shape.times, _JUMPS) if act.already else shape.times)
-                self.jumps |= dict.fromkeys(people, shape.model_copy(update={"times": min(times, _MOST)}))
+                self.figures |= dict.fromkeys(people, shapes.Figure(figure=JUMPS, times=min(times, _MOST)))
             case shapes.Gesture():
                 sides = "both" if GESTURES[shape.gesture].both else act.side or shape.sides
                 self.gestures |= dict.fromkeys(
@@ -379,8 +377,8 @@ class _Stage:
         return self._own_moves()
 
     def _own_moves(self) -> tuple[Move, ...]:
-        """The moves of people who are free to go; others stay, unless a posture, jump or figure has their legs."""
-        low = {*self.changes, *self.jumps, *self.figures}
+        """The moves of people who are free to go; others stay, unless a posture or a figure has their legs."""
+        low = {*self.changes, *self.figures}
         moves = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
         moves = [move for move in moves if move.way != "face" or move.person not in self.changes]  # "sit face to face"
         if {move.person for move in moves if move.way == "to"} == {"a", "b"}:  # they meet for what they do then

@@ -79,7 +79,7 @@ def test_an_entry_that_jumps_or_bows_and_gestures_does_both(
     )
     monkeypatch.setenv("PASDEDEUX_ACTS", str(tmp_path))
     score = score_of(read("She ollies.").acts)
-    assert "a" in {**score.jumps, **score.figures} and "a" in score.gestures
+    assert "a" in score.figures and "a" in score.gestures
     assert "a" not in score.gesturing, "who only gestures stands still"
 
 

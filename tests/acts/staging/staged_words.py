@@ -49,7 +49,7 @@ def changes(words: str) -> Mapping[str, tuple[Change, ...]]:
 
 
 def leaps(words: str) -> Mapping[str, int]:
-    return {who: jump.times for who, jump in score(words).jumps.items()}
+    return {who: figure.times for who, figure in score(words).figures.items() if figure.figure == "jumps"}
 
 
 def figures(words: str) -> Mapping[str, tuple[str, int]]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from acts.shapes import Figure
 from acts.staging.figure_floor import _CLEARANCES
-from acts.staging.figures import figured, figures
+from acts.staging.figures import _rested, figured, figures
 from acts.staging.poses import upright
 from acts.staging.recordings import has_takes
 from motion import SMPL22
@@ -16,7 +16,7 @@ from motion import SMPL22
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}
 FEET, HANDS = [J["left_foot"], J["right_foot"]], [J["left_wrist"], J["right_wrist"]]
 LENGTHS = (1.0, 2.3, 6.0)
-IN_THE_AIR = ("jumping-jacks", "leapfrog", "shoots", "skips-rope", "hops", "smashes")
+IN_THE_AIR = ("jumps", "jumping-jacks", "leapfrog", "shoots", "skips-rope", "hops", "smashes")
 
 
 def made(name: str, seconds: float = 6.0, **more: object) -> NDArray[np.floating]:
@@ -115,3 +115,23 @@ def test_there_is_no_time_for_a_figure_that_is_begun_and_taken_back() -> None:
     poses = made("cartwheel", 1.6)
     assert poses[:, FEET, 1].max() < 0.6
     assert np.abs(poses[-1, 0] - poses[0, 0]).max() < 0.1
+
+
+@pytest.mark.parametrize("times", [1, 3])
+def test_who_jumps_is_in_the_air_as_often_as_told_and_as_long_as_a_body_falls(times: int) -> None:
+    feet = made("jumps", 5.0, times=times)[:, FEET, 1].min(axis=1)
+    air = feet > 0.04
+    assert np.sum(np.diff(air.astype(int)) == 1) == times and feet.max() > 0.2
+    assert air.sum() / times / 30 == pytest.approx(2 * (2 * 0.22 / 9.81) ** 0.5, abs=0.15)
+
+
+@pytest.mark.parametrize("name", ["cartwheel", "jumps", "leapfrog"])
+def test_after_a_figure_people_stand_by_where_it_ended(name: str) -> None:
+    figure = Figure(figure=name, times=1)
+    plain = figured(figure, np.zeros(2), 0.0, 240)
+    poses = _rested(plain, figure, 0, 3)
+    busy = np.linalg.norm(np.diff(plain, axis=0), axis=-1).max(axis=1) > 0.02
+    np.testing.assert_allclose(poses[:-1][busy], plain[:-1][busy], atol=0.05)
+    np.testing.assert_allclose(poses[-1, 0, [0, 2]], plain[-1, 0, [0, 2]], atol=0.4)
+    assert np.ptp(poses[-40:], axis=0).max() > 0.01 > np.ptp(plain[-20:], axis=0).max(), "they live"
+    assert np.linalg.norm(np.diff(poses, axis=0), axis=-1).max() * 30 < 8.0

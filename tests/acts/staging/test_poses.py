@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
-from acts.staging.poses import LOWER, bending, crouching, grounded, kneeling, leaping, lying, seated, stooping, upright
+from acts.staging.poses import LOWER, bending, crouching, grounded, kneeling, lying, seated, stooping, upright
 from motion import SMPL22
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.poses import kneels, lies, low, sits
@@ -66,12 +64,3 @@ def test_who_bends_down_has_the_hands_near_the_floor() -> None:
     pose = stooping(PLACE, 0.7)
     assert pose[[SMPL22.index(f"{side}_wrist") for side in ("left", "right")], 1].max() < 0.4
     assert 0.75 < pose[0, 1] < 0.9 and pose[SMPL22.index("head"), 1] > 0.6
-
-
-def test_a_jump_takes_as_long_as_its_height_needs() -> None:
-    for rise in (0.1, 0.3):
-        moments = leaping(PLACE, 0.0, rise)
-        top = next(pose for seconds, pose in moments if seconds == 0.0)
-        assert abs(top[TOES, 1].min() - 0.02 - rise) < 0.1, "the feet leave the floor"
-        in_air = math.sqrt(2 * rise / 9.81)
-        assert all(abs(seconds) > in_air for seconds, pose in moments if pose[TOES, 1].min() < 0.05)

@@ -7,6 +7,7 @@ import pytest
 
 from acts import lexicon, read
 from acts.plan import Act, Plan, Relation
+from acts.shapes import Figure
 from acts.staging.score import Score
 from acts.staging.stage import score_of
 from motion import InputError
@@ -111,7 +112,7 @@ def test_a_touch_from_behind_or_of_the_back_is_given_there() -> None:
 def test_numbers_sides_and_speeds_reach_the_stage() -> None:
     wave = score_of((Act(id="1", act="wave", agents=("a",), side="left"),))
     assert wave.gestures["a"].sides == "left"
-    assert score_of((Act(id="1", act="jump", agents=("b",), times=3),)).jumps["b"].times == 3
+    assert score_of((Act(id="1", act="jump", agents=("b",), times=3),)).figures["b"] == Figure(figure="jumps", times=3)
     slow, fast = (score_of((Act(id="1", act="walk-up", agents=("a",), speed=s),)).moves[0].speed for s in (0.6, 1.5))
     assert fast == pytest.approx(2.5 * slow)
     squats = score_of((Act(id="1", act="squats", agents=("a",)),)).changes["a"]
