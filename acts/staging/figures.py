@@ -191,8 +191,7 @@ def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Arra
             parts.append(beat.known(person, np.asarray(rises) - beat.start, known, joints))
     score = scores[beat.window.beat]
     frames, poses = _figure(score, person, beat, first, seed)
-    if not len(shown := np.isin(frames, beat.shown(frames)).nonzero()[0]):
-        return parts
+    shown = np.isin(frames, beat.shown(frames))
     figure, at, poses = score.figures["ab"[person]], frames[shown], poses[shown]
     busy = has_takes(figure.figure) and (figure.meets or "ab"[person] in score.gestures)
     body, bows = all_but(HANDS) if busy else ALL, figure.figure.startswith("bows")

@@ -216,9 +216,9 @@ def hand_parts(
             joints, places = _recorded_arms(gesture, person, at, stretch, recorded)
         else:
             joints, at, places = _arms(gesture, person, at, stretch, seed)
-        if len(shown := np.isin(at, stretch.shown(at)).nonzero()[0]):
-            part = _known(person, joints, at[shown], places[shown], stretch)
-            yield replace(part, soft=not GESTURES[gesture.gesture].on)
+        shown = np.isin(at, stretch.shown(at))
+        part = _known(person, joints, at[shown], places[shown], stretch)
+        yield replace(part, soft=not GESTURES[gesture.gesture].on)
 
 
 def _linked(moves: Sequence[Move]) -> bool:

@@ -86,7 +86,7 @@ def plan_parts(
     if (taken and score.joined) or (not start and (story.placed or not (score.is_planned or comes))):
         return []
     parts = _Beat(story, window, scene, placement).parts()
-    return [part for part in parts if part.person not in taken]
+    return [part for part in parts if part.person not in taken and len(part.frames)]
 
 
 def softened(parts: Iterable[Part]) -> list[Part]:
@@ -230,9 +230,9 @@ class _Beat:
                 parts += limb_parts(person, score, stretch, seed)
                 posed[person] = stands
             elif up and who in score.idle & score.frozen:
-                if len(frames := stretch.every(EVENLY, SETTLES if self.start else 0)):
-                    still = upright(np.tile(stretch.halt(person), (len(frames), 1)), stretch.stand.headings[person])
-                    parts.append(stretch.known(person, frames, still))
+                frames = stretch.every(EVENLY, SETTLES if self.start else 0)
+                still = upright(np.tile(stretch.halt(person), (len(frames), 1)), stretch.stand.headings[person])
+                parts.append(stretch.known(person, frames, still))
             elif up and who in score.idle:
                 parts += _bystander_parts(person, stretch, seed)
             elif stays and up and (turned or who in score.gesturing):
@@ -245,7 +245,7 @@ class _Beat:
                 if len(poses) > 1:
                     posed[person] = poses[-1][1]
                 parts += softened(posture_parts(poses, person, score, stretch, self.window.tail(self.story.edges[-1])))
-        return parts, posed
+        return [part for part in parts if len(part.frames)], posed
 
     def on_the_way(
         self, moves: Sequence[Move], touch: Touch | None, posed: dict[int, Array], stretch: Stretch
@@ -343,16 +343,13 @@ def _bystander_parts(
     """
     spacing, settles = (EVENLY, SETTLES // 2) if gesture else (_DRAFTED, SETTLES)
     frames = stretch.every(spacing, settles if stretch.start else 0)
-    if not len(frames):
-        return []
     angle = float(stretch.stand.headings[person])
     poses = standing_by(stretch.halt(person), angle, frames + stretch.start, seed=2 * seed + person)
     hands: list[Part] = []
     if gesture is not None:
         poses = gesture.over(poses, frames / FPS, angle)
         shown = gesture.share(frames / FPS) > 0
-        if shown.any():
-            hands = softened([stretch.known(person, frames[shown], poses[shown], all_but(joints))])
+        hands = softened([stretch.known(person, frames[shown], poses[shown], all_but(joints))])
     at = np.isin(frames, stretch.every(2 * spacing, settles if stretch.start else 0))
     way = Way2D(person, frames[at].tolist(), poses[at, 0][:, [0, 2]], np.full(at.sum(), angle))
     return [*stretch.known_way(way), stretch.draft(person, frames, poses, joints or range(len(JOINT))), *hands]
@@ -391,8 +388,8 @@ def _gait_parts(gait: str, way: Way2D, down: Collection[int], score: Score, stre
     at = stretch.every(EVENLY, GETS_DOWN if low and stretch.start and person not in down else 0)
     at = at[low | walks[at]]
     joints = () if low else all_but(HANDS if "ab"[person] in score.gestures else ())
-    body = [stretch.known(person, at, poses[at], joints, kept=not low)] if len(at) else []
-    return softened(body) + ([] if low else stretch.known_way(way.only(~walks[np.asarray(way.frames)])))
+    body = softened([stretch.known(person, at, poses[at], joints, kept=not low)])
+    return body + ([] if low else stretch.known_way(way.only(~walks[np.asarray(way.frames)])))
 
 
 def _dancing_parts(stretch: Stretch, seed: int, joints: Sequence[Sequence[int]]) -> tuple[list[Part], dict[int, Way2D]]:

@@ -119,8 +119,6 @@ def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:
     apart = float(np.linalg.norm(np.subtract(*stretch.stand.places)))
     begun = stretch.start == 0 and apart < HOLDS[hold].apart + _NEARLY  # a story that begins in the hold
     at = stretch.shown(np.arange(0 if begun else REACHES, stretch.frames, OFTEN))
-    if not len(at):
-        return []
     wrists = joined(hold, np.stack([course.places[at] for course in courses]))
     return _with_hands(stretch, at, HOLDS[hold].lean, wrists, _WRISTS, [*TRUNK, *_WRISTS])
 
@@ -128,8 +126,6 @@ def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:
 def twirl_parts(stretch: Stretch) -> list[KnownFrames]:
     """The bodies and joined right hands of two people, one of whom turns under them."""
     at = stretch.shown(np.arange(REACHES, stretch.frames - REACHES, OFTEN))
-    if not len(at):
-        return []
     hands = raised(np.stack([stretch.course(person).places[at] for person in (0, 1)]))
     wrist = [JOINT["right_wrist"]]
     return _with_hands(stretch, at, 0.0, np.stack([hands[None]] * 2), wrist, [*_HIPS, *TRUNK, *wrist])

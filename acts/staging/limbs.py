@@ -161,8 +161,6 @@ def limb_parts(person: int, score: Score, beat: Stretch, seed: int) -> list[Part
     head stands as these do: their trunk is held, and their arms and legs are a draft.
     """
     frames = beat.every(OFTEN, SETTLES // 2 if beat.start else 0)
-    if not len(frames):
-        return []
     limbs = score.limbs["ab"[person]]
     angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
     poses = limbed(limbs, beat.halt(person), angle, frames / FPS, seconds)

@@ -223,7 +223,7 @@ def _rests(struck: Strike, after: Mapping[int, int], stretch: Stretch) -> list[K
     parts: list[KnownFrames] = []
     for person in () if struck.goes_on else {"ab".index(who) for who in struck.turns} & after.keys():
         frames = stretch.shown(np.arange(after[person] + RESTS, stretch.frames, EVERY))
-        parts += stretch.still(person, frames, [*TRUNK, *HANDS])
+        parts.append(stretch.still(person, frames, [*TRUNK, *HANDS]))
     return parts
 
 
@@ -244,7 +244,7 @@ def _unwarned(struck: Strike, score: Score, listed: Sequence[Blow], stretch: Str
     if "ab"[person] in {*score.gestures, *score.changes, *score.limbs}:
         return []
     stop = stretch.frames if struck.bout == "slaps" else listed[-1].frame + 1
-    return stretch.still(person, stretch.shown(np.arange(RESTS if stretch.start else 0, stop, EVERY)), HANDS)
+    return [stretch.still(person, stretch.shown(np.arange(RESTS if stretch.start else 0, stop, EVERY)), HANDS)]
 
 
 def _first(struck: Strike, score: Score, courses: Sequence[Course]) -> int:

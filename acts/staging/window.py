@@ -175,10 +175,10 @@ class Stretch:
         """The same as a draft to which no network is held."""
         return replace(self.known(person, at, poses, joints), soft=True, free=True)
 
-    def still(self, person: int, at: Frames, joints: Sequence[int]) -> list[KnownFrames]:
-        """Some joints of a person who stands upright on their course at frames (N,), as a part, if there are any."""
+    def still(self, person: int, at: Frames, joints: Sequence[int]) -> KnownFrames:
+        """Some joints of a person who stands upright on their course at frames (N,), as a part."""
         course = self.course(person)
-        return [self.known(person, at, upright(course.places[at], course.headings[at]), joints)] if len(at) else []
+        return self.known(person, at, upright(course.places[at], course.headings[at]), joints)
 
     def known_way(self, way: Way2D) -> list[Part]:
         """What falls into the window of a way."""
