@@ -79,8 +79,9 @@ def test_one_blow_is_struck_once_when_the_two_are_near() -> None:
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_fist_shoots_out_to_the_head_and_not_into_it(side: str) -> None:
     frames, found = poses("fists", side, HERE, THERE)
+    found = found - found[:, :1]
     wrist = found[:, SMPL22.index(f"{side}_wrist")]
-    ahead = ready(HERE, THERE)[HEAD]
+    ahead = ready(HERE, THERE)[HEAD] - ready(HERE, THERE)[0]
     head = np.array([0.0, ahead[1], BOUTS["fists"].apart - ahead[2]])
     away = np.linalg.norm(wrist - head, axis=-1)
     landed = frames.index(-1)
@@ -93,8 +94,9 @@ def test_a_fist_shoots_out_to_the_head_and_not_into_it(side: str) -> None:
 def test_a_slap_comes_from_the_side_and_lands_on_the_cheek() -> None:
     there = np.array([0.0, BOUTS["slaps"].apart])
     frames, found = poses("slaps", "right", HERE, there)
+    found = found - found[:, :1]
     drawn, landed = (found[i, SMPL22.index("right_wrist")] for i in (0, frames.index(-1)))
-    head = ready(HERE, there)[HEAD]
+    head = ready(HERE, there)[HEAD] - ready(HERE, there)[0]
     beside = landed - [0.0, head[1], BOUTS["slaps"].apart - head[2]]
     assert drawn[0] < -0.35 < -0.2 < beside[0] < -0.06, "on the right of the one who slaps"
     assert np.linalg.norm(beside) < 0.16
