@@ -386,7 +386,7 @@ def _gait_parts(gait: str, way: Way2D, down: Collection[int], score: Score, stre
     person, low = way.person, gait in _LOW
     walks, poses = walking(stretch.course(person), 2 * seed + person, gait)
     at = stretch.every(EVENLY, GETS_DOWN if low and stretch.start and person not in down else 0)
-    at = at[low | walks[at]]
+    at = at if low else at[walks[at]]
     joints = () if low else all_but(HANDS if "ab"[person] in score.gestures else ())
     body = softened([stretch.known(person, at, poses[at], joints, kept=not low)])
     return body + ([] if low else stretch.known_way(way.only(~walks[np.asarray(way.frames)])))
