@@ -289,7 +289,7 @@ def dancing(stand: Standing, frames: int, seed: int) -> Array:
 
 
 def walking(course: Course, seed: int, gait: str = "") -> tuple[Array, Array]:
-    """A person on a way over the floor: (T,) whether they walk or run ahead, and (T, 22, 3) metres as they do.
+    """A person on a way over the floor: (T,) whether they walk or run ahead, or go, and (T, 22, 3) metres as they do.
 
     Strides near their pace go on by as much as they do, so that feet stay where they stand.
 
@@ -301,7 +301,7 @@ def walking(course: Course, seed: int, gait: str = "") -> tuple[Array, Array]:
     steps = np.gradient(course.places, axis=0) if len(course.places) > 1 else np.zeros((1, 2))
     ahead = np.sum(steps * direction(course.headings), axis=1)
     gone = np.linalg.norm(steps, axis=1)
-    walks = (gone * FPS > (_CREEPS if gait else _WALKS)) & (ahead > _AHEAD * gone)
+    walks = gone * FPS > _CREEPS if gait else (gone * FPS > _WALKS) & (ahead > _AHEAD * gone)
     pace = max(float(gone[walks].sum()) / max(int(walks.sum()), 1) * FPS, _CREEPS)
     dice = np.random.default_rng([seed, 4])
     known = _read_gaits(gait or ("run" if pace > _RUNS else "walk"))
