@@ -64,7 +64,7 @@ class Arguments:
                 event.prepositions.append((way, self._argument(child, who, event)))
             elif child.dep_ in ("dobj", "obj") and self._is_measure(child, event):  # "walk a few steps"
                 self._measured(child, who, event)
-            elif child.dep_ in ("dobj", "obj"):
+            elif child.dep_ in ("dobj", "obj") or (child.dep_ == "nsubj" and child.i > token.i):
                 self._object(child, who, event)
             elif child.dep_ in ("dative", "iobj") and child.pos_ != "ADP":
                 event.dative = self._argument(child, who, event)
@@ -124,6 +124,9 @@ class Arguments:
     def _object(self, token: Token, who: str, event: Event) -> None:
         """Takes up an object; of two, as in "hands the knight his sword", the person is the receiver."""
         ref = self._argument(token, who, event)
+        things = (c for c in token.children if c.dep_ == "appos" and c.left_edge.i == token.i + 1)
+        if ref.kind == "person" and (thing := next(things, None)) is not None:  # "shows the boy a cup"
+            event.object, ref, token = ref, self._argument(thing, who, event), thing
         if event.object is not None and event.object.kind == "person" and ref.kind != "person":
             event.dative = event.object
         if ref.kind == "thing" and token.tag_ == "NN":

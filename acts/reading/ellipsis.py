@@ -42,7 +42,7 @@ class Ellipsis:
     def __init__(self, lower: Callable[[int], str], speller: Speller) -> None:
         self._lower, self._is_deed, self._forms = lower, speller.is_deed, speller.forms
         self._words = vocabulary()
-        self._last = ""
+        self.last = ""
         """The last verb of the sentence, also one that was supplied."""
         self._behind = 0
         """The number of the word behind it."""
@@ -50,10 +50,10 @@ class Ellipsis:
     def before(self, i: int) -> str:
         """The verb to supply before the word ``i``; "" for none. Asked for each word in order."""
         if self._lower(i - 1) in ("", ".", "!", "?", ";"):
-            self._last = ""
+            self.last = ""
         verb = self._listed_side(i) or self._deed(i) or self._being(i)
         if verb:
-            self._last, self._behind = verb.partition(" ")[0], i
+            self.last, self._behind = verb.partition(" ")[0], i
         else:
             self.passed(i)
         return verb
@@ -61,16 +61,12 @@ class Ellipsis:
     def passed(self, i: int) -> None:
         """Takes note of a word that may be the sentence's last verb."""
         if self._acts(i):
-            self._last, self._behind = self._lower(i), i + 1
-
-    def has_acted(self) -> bool:
-        """True if the sentence has a verb before the word that was asked for last."""
-        return bool(self._last)
+            self.last, self._behind = self._lower(i), i + 1
 
     def _being(self, i: int) -> str:
         """The verb of "two kids (are) playing, one falls", which the parser takes for one clause."""
         noun, ends, at = self._lower(i - 1), ("", ".", "!", "?", ";"), i
-        if self._last or self._ending(self._lower(i)) != "ing" or not is_somebody(noun):
+        if self.last or self._ending(self._lower(i)) != "ing" or not is_somebody(noun):
             return ""
         while (word := self._lower(at)) not in ends and (self._ending(word) != "s" or self._words.named_part(word)):
             at += 1
@@ -86,7 +82,7 @@ class Ellipsis:
         """The verb that a noun of a deed lacks: "(do) two hops, then (do) a bow"."""
         count, listed = self._count(i), self._lower(i - 1) in _ENDS
         if self._lower(i - 1) == "and":  # "throws a jab and a hook" has its verb
-            listed = self._last.startswith(PERFORM)
+            listed = self.last.startswith(PERFORM)
         if not count and self._is_headline(i):
             return PERFORM
         if not count or not listed:
@@ -137,7 +133,7 @@ class Ellipsis:
 
     def _form(self, verb: str) -> str:
         """A verb in the form of the sentence's last one."""
-        ending = "s" if self._last == "is" else self._ending(self._last)
+        ending = "s" if self.last == "is" else self._ending(self.last)
         if ending == "ing":
             return verb.removesuffix("e") + ending
         return verb + "s" if ending == "s" else verb
@@ -174,7 +170,7 @@ class Ellipsis:
 
     def _listed_side(self, i: int) -> str:
         """The verb done again to another side: "throws left, (throws) right", "with the right leg, then the left"."""
-        if not self._last or self._lower(i - 1) not in _JOINS:
+        if not self.last or self._lower(i - 1) not in _JOINS:
             return ""
         at = i - 1
         while self._lower(at) in _JOINS or self._lower(at) == "first":
@@ -194,7 +190,7 @@ class Ellipsis:
         end = first - 1 - (self._lower(first - 1) in closed("owners"))
         before = self._lower(end)
         object_ = range(self._behind, end + (before not in closed("before sides")))
-        said = [self._last]
+        said = [self.last]
         if 0 < len(object_) < 4 and self._is_sided(object_[-1]):  # "turns the head left, then (turns the head) right"
             said += map(self._lower, object_)
         if before in closed("before sides") and not own and (more or self._lower(i) in closed("owners")):

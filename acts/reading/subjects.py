@@ -17,6 +17,7 @@ from .vocabulary import closed, vocabulary
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
 
+_SUBJECTS = frozenset(("nsubj", "nsubjpass", "csubj", "expl"))
 _SOMEBODY = ANYONE | {"someone", "somebody"}
 _PLAIN = _SOMEBODY | {"man", "woman", "guy", "boy", "girl", "human", "kid", "child", "dude", "figure", "sim"}
 """Nouns that name nobody's part in a scene, as "nurse" does, who has a patient."""
@@ -269,7 +270,7 @@ class Subjects:
         # "he comes running"
         moving = (c for aux in token.children if aux.dep_ == "aux" for c in aux.children)
         for child in (*token.children, *moving):
-            if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
+            if child.dep_ in _SUBJECTS or (child.dep_ == "nummod" and child.lower_ == "one"):  # "one jumps"
                 if child.tag_ in ("WP", "WDT") and (token.dep_ == "relcl" or child.lower_ == "who"):
                     antecedent = self._antecedent(token) if token.dep_ == "relcl" else None
                     return antecedent

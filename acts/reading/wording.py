@@ -222,7 +222,7 @@ class _Preparation:
         lower, following = word.lower(), self._lower(i + 1)
         if lower in self._words.shorthand:
             return self._words.shorthand[lower]
-        if lower == "using" and self._ellipsis.has_acted() and self._lower(i - 1) not in closed("going"):
+        if lower == "using" and self._ellipsis.last and self._lower(i - 1) not in closed("going"):
             return "with"  # "kicks using the left leg"
         if lower.endswith("s") and following.isalpha() and self._owns(i, lower[:-1]):
             return f"{self._words.shorthand.get(lower[:-1], word[:-1])}'s"  # "her brothers back"
