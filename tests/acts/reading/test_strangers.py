@@ -66,7 +66,6 @@ from tests.acts.reading.reading import told
         # what the two do to each other's hands, to things, and with one's own body
         ("They clap hands with each other.", [("clap-each-other", "ab", None)]),
         ("A touches the left wrist.", [("touch-own", "a", None)]),
-        ("A touches B's left wrist.", [("touch", "a", "b")]),
         ("A taps B and touches the left wrist.", [("pat", "a", "b"), ("touch-own", "a", None)]),
         ("a person grabs something with both hands", [("grab-thing", "a", None)]),
         ("a person moves objects on a shelf", [("move-thing", "a", None)]),
