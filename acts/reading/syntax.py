@@ -214,7 +214,7 @@ def is_finite(token: Token) -> bool:
 def may_be_main(token: Token) -> bool:
     """True for a clause that is a main one if the one above it is."""
     if token.dep_ == "ccomp":  # of two clauses with nothing but a comma between them, the first
-        return token.i < token.head.i and has(token, "nsubj", "nsubjpass", "nummod")
+        return token.i < token.head.i and has(token, "nsubj", "nsubjpass", "nummod", "expl")
     if token.dep_ == "advcl":
         words = vocabulary()
         marks = any(c.dep_ in ("mark", "aux") or c.lower_ in words.marks for c in token.children)

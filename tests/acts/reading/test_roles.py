@@ -102,6 +102,7 @@ def test_what_is_done_instead_is_all_that_is_done() -> None:
         ("One claps while the other one counts on her fingers.", ["a clap b", "b gesture-about a"]),
         ("A thief runs away, she chases him.", ["a run-away b", "b chase a"]),
         ("One jumps, the other squats.", ["a jump", "b crouch"]),
+        ("There are two people dancing, one falls.", ["ab dance", "a fall-down"]),
         # who helps is not the one who is helped
         ("A falls and B helps him get up.", ["a fall-down", "b help-up a"]),
         ("A bows and B makes him laugh.", ["a bow", "a laugh"]),
