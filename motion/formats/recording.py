@@ -46,7 +46,7 @@ class ImportChoices:
         if self.up is not None and self.up not in AXES:
             raise InputError(f"Up axis {self.up!r:.20} is not known: choose x, y or z, or -x, -y or -z.")
         if self.fps is not None and not RATES[0] <= self.fps <= RATES[1]:
-            raise InputError(f"A frame rate of {self.fps:g} is not possible: give {RATES[0]:g} to 1,000.")
+            raise InputError(f"A frame rate of {self.fps!r:.20} is not possible: give {RATES[0]:g} to 1,000.")
         if self.order is not None and self.order not in SKELETONS:
             raise InputError(f"Joint order {self.order!r:.20} is not known: choose one of {', '.join(SKELETONS)}.")
 

@@ -20,7 +20,7 @@ def test_numbers_outside_their_limits_are_refused_with_them(value: float) -> Non
         number("Length", value, 1, 4, " seconds")
 
 
-@pytest.mark.parametrize("value", [True, "2", None, float("nan"), float("inf")])
+@pytest.mark.parametrize("value", [True, "2", None, float("nan"), float("inf"), 10**400])
 def test_what_is_no_number_is_refused(value: Any) -> None:
     with pytest.raises(InputError, match=r"Seed must be a number from 0 to 4,294,967,295"):
         number("Seed", value, 0, 2**32 - 1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, InputError, formats
+from motion.formats import bvh
 from motion.formats.bvh import read_bvh
 from motion.formats.importing import import_motion
 from motion.formats.recording import ImportChoices
@@ -139,10 +142,22 @@ LAST = GOOD.splitlines()[-1]
 FAST = bvh_text(np.repeat(ROTATIONS, 4, axis=0)[2:], np.repeat(ROOT, 4, axis=0)[2:], RIGS["mixamo"])
 
 
+def test_places_below_the_root_that_are_all_zero_say_nothing():
+    text = re.sub(r"(JOINT [^{]*{\s*OFFSET[^\n]*\s*CHANNELS) 3 ", r"\1 6 Xposition Yposition Zposition ", GOOD)
+    head, tail = text.split("Frame Time")
+    rows = []
+    for numbers in (row.split() for row in tail.splitlines()[1:]):
+        turns = (" ".join(numbers[i : i + 3]) for i in range(6, len(numbers), 3))
+        rows.append(" ".join([*numbers[:6], *(f"0 0 0 {each}" for each in turns)]))
+    found = read_bvh("\n".join([f"{head}Frame Time: 0.0333333", *rows]).encode())[0]
+    np.testing.assert_allclose(found.positions, read_bvh(GOOD.encode())[0].positions, atol=1e-6)
+
+
 @pytest.mark.parametrize(("file_fps", "every"), [(120, 4), (30, 1), (100, 2)])
-def test_of_a_faster_file_only_the_frames_that_are_needed_are_placed(file_fps, every):
+def test_of_a_faster_file_only_the_frames_that_are_needed_are_placed(file_fps, every, monkeypatch):
     data = FAST.replace("Frame Time: 0.0333333", f"Frame Time: {1 / file_fps:.7f}").encode()
     whole = read_bvh(data)[0]
+    monkeypatch.setattr(bvh, "_PIECE", 3400)  # bytes, five frames
     rig = read_bvh(data, fps=30.0)[0]
     assert (rig.every, rig.fps * rig.every) == (every, file_fps) and whole.fps == file_fps
     np.testing.assert_array_equal(rig.positions, whole.positions[::every])

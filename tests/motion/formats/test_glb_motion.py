@@ -274,3 +274,20 @@ def test_another_is_chosen_by_its_name_or_else_by_its_number(choice: Any, number
     found = imported(choice)
     assert found.animations is not None and found.animations.taken == (number,)
     assert (limbs(found) > 0.1) == (number == 1)
+
+
+@pytest.mark.parametrize(
+    ("way", "share", "place"), [("STEP", 0.6, 0.0), ("LINEAR", 0.6, 0.6), ("CUBICSPLINE", 0.5, 0.375)]
+)
+def test_between_keys(way: str, share: float, place: float) -> None:
+    """The spline leaves 0 with a slope of 1 and arrives at 1 with one of 2; 7 and 9 are those of its other sides."""
+    keys = np.array([[7.0, 0.0, 1.0], [2.0, 1.0, 9.0]])[..., None] * np.ones(3)
+    channel = Channel(0, "translation", np.array([0.0, 1.0]), keys if way == "CUBICSPLINE" else keys[:, 1], way)
+    np.testing.assert_allclose(channel.at(np.array([share])), [[place] * 3])
+
+
+def test_whole_numbers_stand_for_fractions() -> None:
+    blob = np.array([32767, 0, -32767, 16384], dtype=np.int16).tobytes()
+    stored = Stored("VEC4", 1, 5122, 0, 8, True)
+    found = GlbFile(packed({"asset": {"version": "2.0"}}, blob), "x.glb").decoded(stored, "turns")
+    np.testing.assert_allclose(found, [[1, 0, -1, 0.5]], atol=1e-4)

@@ -1,10 +1,12 @@
 """What was found in a file is reported, and what the user knows about it is believed."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from motion import SMPL22, InputError, formats
-from motion.formats.importing import import_motion
+from motion.formats.importing import import_motion, import_pair
 from motion.formats.recording import ImportChoices
 from motion.guesses import AXES, likely_skeleton, turn_of
 from motion.kinematics import forward_kinematics
@@ -99,3 +101,11 @@ def test_seventeen_joints_are_of_the_order_in_which_they_are_a_body(name: str, t
         [body[:, ours if ours >= 0 else SMPL22.index("head")] for ours in LAYOUTS[name].joints], axis=1
     )
     assert likely_skeleton(positions) == (SKELETONS[name], None)
+
+
+@pytest.mark.parametrize("frames", [(30, 40), (40, 30)])
+def test_two_files_are_as_long_as_the_shorter(frames: tuple[int, int], tmp_path: Path) -> None:
+    paths = [tmp_path / f"P{number}.npy" for number in (1, 2)]
+    for path, count in zip(paths, frames, strict=True):
+        path.write_bytes(npy(standing(count)))
+    assert import_pair(*paths).motion.num_frames == 30

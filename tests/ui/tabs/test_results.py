@@ -15,7 +15,7 @@ import pytest
 from tests.ui.tab_events import built
 from tests.ui.tabs.generating import result_of
 from webdemo.ui.components.exports import KINDS, file_name, for_download, offered, write_files
-from webdemo.ui.components.film import make_film
+from webdemo.ui.components.film import link_address, make_film
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.view.stage import Style
 
@@ -99,3 +99,9 @@ def test_runs_that_differ_have_files_that_differ_in_name() -> None:
     manifests = [{"request": asked}, {"request": asked | {"guidance": 3.0}}, {"request": asked, "model": "other"}]
     names = [file_name("hug", manifest) for manifest in manifests]
     assert len(set(names)) == 3 and file_name("hug", dict(manifests[0])) == names[0]
+
+
+@pytest.mark.parametrize("shown", ["[" * 2000, f'{{"frame": {"9" * 400}, "yaw": NaN}}', '{"frame": 1e999}', "{", "7"])
+def test_a_link_has_of_a_player_only_what_can_be_used(shown: str) -> None:
+    address = link_address("http://lab/", "k", shown)
+    assert "yaw" not in address and len(address) < 60

@@ -6,11 +6,11 @@ No torch here: the page and the shell choose and trim before any network loads.
 from __future__ import annotations
 
 import hashlib
-import math
+import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -30,6 +30,11 @@ _COUNTS = ("no", "one", "two", "three", "four", "five", "six")
 _BODY_SIZES = (0.5, 1.6)
 # Metres; farther away, 32-bit positions are not exact to a tenth of a millimetre.
 _FARTHEST = 1000.0
+
+
+def finite(value: Any) -> TypeGuard[float]:
+    """True for a number that a float can hold; JSON may have whole ones of any length."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def choose_person(people: Sequence[Clip], person: str | None, name: str) -> int:
@@ -74,10 +79,12 @@ def choose_actor(
         InputError: if the choice is open, or the times do not lie in the motion.
     """
     clip = people[choose_person(people, person, name)]
+    if not finite(start) or not finite(end or 0.0):
+        raise InputError(f"Start and end must be seconds, not {start!r:.20} and {end!r:.20}.")
     if start >= clip.seconds:
         raise InputError(f"The start, {start:g} s, is after the end of the motion, which lasts {clip.seconds:.1f} s.")
     stop = clip.seconds if end is None else end
-    if not (math.isfinite(start) and math.isfinite(stop) and 0 <= start < stop):
+    if not 0 <= start < stop:
         raise InputError(f"Start and end must be seconds with 0 ≤ start < end, not {start:g} and {stop:g}.")
     first, last = round(start * clip.fps), round(min(stop, clip.seconds) * clip.fps)
     return at_30_fps(clip.cut(first, max(last, first + 1)))

@@ -15,7 +15,7 @@ import numpy as np
 
 from motion import FPS, InputError
 
-from .actor import ROLES
+from .actor import ROLES, finite
 
 FLOOR = 8.0
 """Metres from the middle of the floor to its edges."""
@@ -92,7 +92,7 @@ class FloorPath:
             raise InputError(f"The path of {who} has {len(self.points)} points: give 1 to {MOST_POINTS}.")
         for i, point in enumerate(self.points, 1):
             numbers = [v for v in (point.x, point.z, point.seconds, point.heading) if v is not None]
-            if not all(isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) for v in numbers):
+            if not all(map(finite, numbers)):
                 raise InputError(f"Point {i} of the path of {who} needs finite numbers.")
             if max(abs(point.x), abs(point.z)) > FLOOR:
                 raise InputError(

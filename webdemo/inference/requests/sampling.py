@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, Self
@@ -16,7 +15,7 @@ from motion import Clip, InputError
 from webdemo.inference import methods
 from webdemo.inference.method import Method
 
-from .actor import ROLES, check_actor, check_pose, motion_facts
+from .actor import ROLES, check_actor, check_pose, finite, motion_facts
 from .paths import FloorPath, path_of, timed_paths
 from .plans import KeptPlan, plan_of_words
 
@@ -271,7 +270,7 @@ def check_settings(request: object) -> None:
 
 def number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
     """The value if it is a finite number from ``low`` to ``high``; raises InputError, a sentence, if it is not."""
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if not finite(value):
         raise InputError(f"{name} must be a number from {_plain(low)} to {_plain(high)}{unit}, not {value!r:.40}.")
     if not low <= value <= high:
         raise InputError(f"{name} must be from {_plain(low)} to {_plain(high)}{unit}, not {_plain(value)}.")

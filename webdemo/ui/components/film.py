@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
 
-import numpy as np
-
 from motion import Clip, Duet, InputError
+from webdemo.inference.requests.actor import finite
 from webdemo.inference.requests.predict import PredictResult
 from webdemo.inference.run import Result
 from webdemo.view import film, plotly_figure
@@ -132,7 +131,7 @@ def read_player(shown: str) -> Mapping[str, Any]:
     """Reads the answer of :data:`READ_PLAYER` as a dictionary; an empty one if it is none."""
     try:
         state = json.loads(shown[:2000])
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, RecursionError):
         return {}
     return state if isinstance(state, dict) else {}
 
@@ -145,9 +144,7 @@ def _one_of(state: Mapping[str, Any], key: str, known: tuple[str, ...], default:
 def number_of(state: Mapping[str, Any], key: str, low: float, high: float) -> float | None:
     """A finite number between bounds; None where there is none."""
     value = state.get(key)
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
-        return None
-    return float(min(max(value, low), high))
+    return float(min(max(value, low), high)) if finite(value) else None
 
 
 _LIMITS = {"yaw": (-1000.0, 1000.0), "elevation": (-0.05, 1.5), "distance": (0.8, 40.0)}

@@ -13,6 +13,7 @@ from pydantic import Field, TypeAdapter
 
 from acts import Act
 from motion import InputError
+from webdemo.inference.requests.actor import finite
 from webdemo.inference.requests.paths import FloorPath, path_of
 from webdemo.inference.story import Beat, Pose, SceneRequest
 from webdemo.inference.story.beats import MOST_BEATS
@@ -138,6 +139,6 @@ def ticked(value: Any) -> dict[str, Any]:
 def span_of(value: Any) -> tuple[float, float] | None:
     """The selected span in seconds, if there is one."""
     span = value.get("span") if isinstance(value, Mapping) else None
-    if not isinstance(span, list) or len(span) != 2 or not all(isinstance(v, (int, float)) for v in span):
+    if not isinstance(span, list) or len(span) != 2 or not all(map(finite, span)):
         return None
     return float(span[0]), float(span[1])
