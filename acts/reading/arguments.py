@@ -20,7 +20,6 @@ from .vocabulary import closed, is_act, vocabulary
 if TYPE_CHECKING:
     from spacy.tokens import Token
 
-_SMALL = frozenset(("ccomp", "xcomp", "advcl", "oprd"))
 _MODIFIERS = frozenset(("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound"))
 
 
@@ -75,7 +74,9 @@ class Arguments:
                     agent = None
             elif child.dep_ in ("prep", "dative") or (child.dep_ == "prt" and has(child, "pobj")):
                 self._preposition(child, who, event)
-            elif child.dep_ in _SMALL and (child.pos_ in ("ADP", "ADV") or (child.pos_ == "ADJ" and child.i > token.i)):
+            elif child.dep_ in ("ccomp", "xcomp", "advcl", "oprd") and (
+                child.pos_ in ("ADP", "ADV") or (child.pos_ == "ADJ" and child.left_edge.i == token.i + 1)
+            ):
                 for noun in child.children:  # "lifts the second person up" and "shakes him awake", as a clause
                     if noun.dep_ in ("nsubj", "pobj") and event.object is None:
                         event.object = self._argument(noun, who, event)

@@ -45,7 +45,7 @@ def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
         return Plan(sentence=text, notes=("Nothing is said: write what the two people do.",))
     if (foreign := other_language(text)) is not None:
         return Plan(sentence=text, unread=(Unread(words=Span(start=0, stop=len(text)), why=foreign),), notes=(foreign,))
-    attempts = sorted(_attempts(text, lexicon(folders)), key=lambda attempt: (attempt[0], -len(attempt[1].acts)))
+    attempts = sorted(_attempts(text, lexicon(folders)), key=lambda attempt: attempt[0])
     cost, plan = attempts[0]
     others = [other for its_cost, other in attempts[1:] if its_cost <= cost + _DOUBT]
     return plan.model_copy(update={"doubts": tuple(_doubts(plan, others))[:8]}) if others else plan

@@ -47,7 +47,6 @@ class Reader:
         self._words, self._known = vocabulary(), known
         self._of: dict[int, int] = {}
         self._joints: list[tuple[Event, Token, str, int | None]] = []
-        """The events, each with a word of it, how it is joined, and to the event of which verb, by token."""
 
     def read(self) -> list[Event]:
         """The events, in the order of the text."""
