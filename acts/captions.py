@@ -24,6 +24,7 @@ _BY_FOOT = re.compile(r"\[(?:kick|step|hop|walk|run|march|limp|stumble|stamp|tur
 _NAMES = {"a": "person A", "b": "person B"}
 _COUNTS = {1: "once", 2: "twice", 3: "three times"}
 _PRONOUNS = frozenset(("it", "them", "something"))
+_WITH, _BESIDE = re.compile(r" with \{b\}"), re.compile(r" (with|past) \{b\}")
 _OTHER = re.compile(r"(?<! each) other$")
 _PLAIN = frozenset(("a", "an", "the", "their"))
 _BEFORE_PEOPLE = frozenset(("to", "with", "at", "of"))
@@ -270,7 +271,7 @@ def _phrase(act: Act, entry: Entry | None, both: str) -> str:
         "limb": f"both {plural(act.part or 'hand')}" if act.side == "both" else f"{side}{act.part or 'hand'}",
     }
     if both:  # "stagger", not past each other
-        caption = re.sub(r" with \{b\}" if "past" in name else r" (with|past) \{b\}", "", caption)
+        caption = (_WITH if "past" in name else _BESIDE).sub("", caption)
     filled = _SLOT.sub(lambda m: f"{values.get(m[1], '')} ", caption)
     kept: list[str] = []
     for word in filled.split():

@@ -69,8 +69,8 @@ def figure(name: str, m: Motion, *values: Any, **named: Any) -> tuple[str, str]:
         easy, hard = (middle, hard) if holds(middle) else (easy, middle)
     who, way = asked.get("who", 0), asked.get("way", "")
     said, needed = (_over(each) if limit == "over" else _said(each, unit) for each in (easy, asked[limit]))
-    if said == needed and not holds(asked[limit]):
-        said = f"just {'over' if name in AT_MOST else 'under'} {needed}"
+    if said == needed:
+        said = f"just {'over' if (name in AT_MOST) != holds(asked[limit]) else 'under'} {needed}"
     words = {"who": "AB"[who], "whom": "BA"[who], "part": asked.get("part"), "way": _WAYS.get(way, way), limit: said}
     return " ".join(text.format(**words).split()), needed
 

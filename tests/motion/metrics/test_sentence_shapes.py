@@ -188,6 +188,9 @@ def test_a_lean_is_measured_in_the_way_that_is_asked_for() -> None:
     assert measured("happens(leans(a, 'left'))", motion, lacking=True) == "trunk leans to the left by 0°, 15° needed"
     assert measured("happens(runs(a, 0.5))", motion, lacking=True) == "A reaches 0.0 m/s, 1.7 m/s needed"
     assert measured("never(near(9.0))", motion, lacking=True) == "they stay 2.0 m apart, more than 9.0 m needed"
+    just = "they stay just under 2.0 m apart, more than 2.0 m needed"
+    assert measured("never(near(2.001))", motion, lacking=True) == just
+    assert measured("happens(goes_way(a, 'right'))", motion, lacking=True) == "A goes 0 cm to the right, 30 cm needed"
     assert measured("happens(leans(a, 'forward'))", motion) == "trunk leans forward by 30°"
     both = "happens(both(leans(a, 'forward'), near(0.5)))"
     assert measured(both, motion, lacking=True) == "they stay 2.0 m apart, 50 cm needed", "and not what holds"

@@ -80,7 +80,7 @@ def choose_actor(
     """
     clip = people[choose_person(people, person, name)]
     if not finite(start) or not finite(end or 0.0):
-        raise InputError(f"Start and end must be seconds, not {start!r:.20} and {end!r:.20}.")
+        raise InputError(f"Start and end must be seconds with 0 ≤ start < end, not {start!r:.20} and {end!r:.20}.")
     if start >= clip.seconds:
         raise InputError(f"The start, {start:g} s, is after the end of the motion, which lasts {clip.seconds:.1f} s.")
     stop = clip.seconds if end is None else end
