@@ -135,3 +135,11 @@ def test_after_a_figure_people_stand_by_where_it_ended(name: str) -> None:
     np.testing.assert_allclose(poses[-1, 0, [0, 2]], plain[-1, 0, [0, 2]], atol=0.4)
     assert np.ptp(poses[-40:], axis=0).max() > 0.01 > np.ptp(plain[-20:], axis=0).max(), "they live"
     assert np.linalg.norm(np.diff(poses, axis=0), axis=-1).max() * 30 < 8.0
+
+
+@pytest.mark.parametrize("name", ["push-ups", "kicks"])
+def test_a_late_figure_begins_late(name: str) -> None:
+    def begins(poses: NDArray[np.floating]) -> int:
+        return int(np.argmax(np.linalg.norm(poses - poses[0], axis=-1).max(axis=1) > 0.1))
+
+    assert begins(made(name, late=1.0)) - begins(made(name)) == pytest.approx(30, abs=8)

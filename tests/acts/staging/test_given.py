@@ -74,3 +74,16 @@ def test_who_pulls_the_other_up_bends_down_once_they_are_there() -> None:
     (pulls,) = (p for p in poses_of("B helps A up.") if p.person == 1 and not p.soft and JOINT["neck"] in p.joints)
     ways = [part for part in poses_of("B helps A up.") if part.person == 1 and part.free]
     assert min(pulls.frames) > max(ways[0].frames) - 10, "they walk up bent, with an arm stretched out"
+
+
+@pytest.mark.parametrize(("words", "together"), [("They flap their arms.", True), ("They beckon.", False)])
+def test_two_make_a_gesture_in_time_or_each_in_their_own(words: str, together: bool) -> None:
+    a, b = (part.positions for part in poses_of(words) if JOINT["right_wrist"] in part.joints)
+    wrist = JOINT["right_wrist"]
+    assert np.allclose(np.asarray(a)[:, wrist, 1], np.asarray(b)[:, wrist, 1], atol=1e-3) is together
+
+
+@pytest.mark.parametrize(("words", "rests"), [("A pats B on the back.", True), ("A pats B on the shoulder.", False)])
+def test_the_hand_hangs_after_pats_of_the_back(words: str, rests: bool) -> None:
+    (arm,) = (part for part in poses_of(words) if part.person == 0)
+    assert (arm.frames[-1] > FRAMES - 10) is rests
