@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -19,14 +19,13 @@ from acts.plan import other_of
 from motion import SMPL22, Duet
 from motion.metrics.sentences.joints import Motion, stretches
 from motion.metrics.sentences.language import check, mask_of, masks, measured
-from motion.metrics.sentences.touches import BODY
+from motion.metrics.sentences.touches import has_sides
 
 from .accounting import account, shown_caption
 from .captions import by_limb, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import ON_TIPTOE, Act, Plan
-from .qualifiers import OTHER_THING, plain, qualifiers
-from .reading.vocabulary import vocabulary
+from .qualifiers import OTHER_THING, body_part, plain, qualifiers
 from .shapes import Lift
 
 ONLY = {"tried": "only tried", "offered": "only offered", "pretended": "only pretended", "wished": "only wished"}
@@ -105,16 +104,20 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
     if why := _unjudged(act, entry):
         return Verdict(act.id, act.act, _words(act, entry), None, why, quoted, wrote)
     assert entry is not None
-    casts = [rule for who in act.agents for rule in rules_of(act, entry, who)]
-    if act.polarity == "not":
-        seen = all(check(rule, motion) for rule in casts)
-        return Verdict(act.id, act.act, _words(act, entry), not seen, _measure([], casts, motion))
+    asked: dict[str, list[str]] = {}
     unchecked: dict[str, None] = {}
     for who in act.agents:
-        mask = next((mask for rule in rules_of(act, entry, who) for mask in masks(rule)[:1]), "")
+        asked[who] = rules_of(act, entry, who)
+        mask = next((mask for rule in asked[who] for mask in masks(rule)[:1]), "")
         for kind, rule in qualifiers(act, entry, who, mask, plan.text(act.words) if act.words else ""):
-            casts += [rule] if rule else []
+            asked[who] += [rule] if rule else []
             unchecked |= {} if rule else {kind: None}
+    casts = [rule for rules in asked.values() for rule in rules]
+    if act.polarity == "not":
+        seen = any(all(check(rule, motion) for rule in rules) for rules in asked.values())
+        done = None if seen and unchecked else not seen
+        measure = next(iter(unchecked)) if done is None else _measure([], casts, motion)
+        return Verdict(act.id, act.act, _words(act, entry), done, measure, (*unchecked, *quoted), wrote)
     failed = [rule for rule in casts if not check(rule, motion)]
     if not failed and OTHER_THING in unchecked:
         return Verdict(act.id, act.act, _words(act, entry), None, OTHER_THING, quoted, wrote)
@@ -123,6 +126,15 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
     words = _words(plain(act, frozenset(unchecked)) if done else act, entry)
     measure = late or _measure(failed, casts, motion)
     return Verdict(act.id, act.act, words, done, measure, (*unchecked, *quoted), wrote)
+
+
+def decided(verdict: Verdict, act: Act, plan: Plan, *, done: bool, measure: str) -> Verdict:
+    """A verdict by something else than a rule, such as a thing that moves: nothing measures the act's qualifiers."""
+    entry = lexicon().entries[act.act]
+    said = plan.text(act.words) if act.words else ""
+    kinds = dict.fromkeys(kind for who in act.agents for kind, _ in qualifiers(act, entry, who, "", said))
+    words = _words(plain(act, frozenset(kinds)) if done else act, entry)
+    return replace(verdict, done=done, measure=measure, words=words, unchecked=(*kinds, *verdict.unchecked))
 
 
 def _unjudged(act: Act, entry: Entry | None) -> str:
@@ -242,10 +254,8 @@ def _seen(act: Act, known: Lexicon) -> list[str]:
 def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
     """The rules of an act with its own values in the place of their names, for one of its agents."""
     whom = other_of(who)
-    named = act.part or ""
-    part = named if named in BODY else vocabulary().part(named)
-    part = part if part in BODY else "body"
-    part = f"{act.part_side} {part}" if act.part_side else part
+    part = body_part(act) or "body"
+    part = f"{act.part_side} {part}" if act.part_side and has_sides(part) else part
     way = _OF_THE_CLOCK.get(act.direction or "", act.direction)
     way = way if way in ("forward", "back", "left", "right") else "any"
     said: dict[str, str | float] = {"side": act.side or "any", "part": part, "way": way}

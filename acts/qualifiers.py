@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from motion.metrics.sentences.touches import BODY
+from motion.metrics.sentences.touches import BODY, has_sides
 
 from .accounting import said_words, shown_caption
 from .captions import plural
@@ -46,7 +46,7 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         yield "how often", ""
     if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
         yield "which side", ""
-    if act.part_side and "part" not in names:
+    if act.part_side and not ("part" in names and has_sides(body_part(act))):
         yield "which side", _on_side(act, entry, who)
     both = _BOTH.search(said) if act.side == "both" else None
     if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
@@ -103,8 +103,13 @@ def plain(act: Act, kinds: frozenset[str]) -> Act:
 def _on_side(act: Act, entry: Entry, who: str) -> str:
     """A hand is on that side of the other's body, where it is an act of the hands; else ""."""
     by_hand = any(isinstance(shape, Touch) and shape.hands != "none" for shape in entry.stage)
-    part = next((name for name in (act.part, vocabulary().part(act.part or "")) if name in BODY), "")
-    return f"happens(hand_on({who}, '{act.part_side} {part}', gap=0.25))" * (by_hand and bool(part))
+    part = body_part(act)
+    return f"happens(hand_on({who}, '{act.part_side} {part}', gap=0.25))" * (by_hand and has_sides(part))
+
+
+def body_part(act: Act) -> str:
+    """The part of the body that an act names, as rules name it; "" where it names none."""
+    return next((name for name in (act.part, vocabulary().part(act.part or "")) if name in BODY), "")
 
 
 def _goes_way(act: Act, who: str) -> str:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from acts.checking import Verdict, rules_of
+from acts.checking import Verdict, decided, rules_of
 from acts.lexicon import is_stand_in, kind_of, lexicon
 from acts.plan import Act, Plan, PlanFrames
 from motion import SMPL22, Duet
@@ -217,10 +217,10 @@ def judge_things(
         lengths: seconds of the beats into which the sentence was split, where it was.
     """
     frames = {act.id: (act, first, last) for act, first, last in act_frames(plan, start, stop, lengths)}
-    return tuple(_judge(each, duet, *frames[each.id]) if each.id in frames else each for each in verdicts)
+    return tuple(_judge(each, plan, duet, *frames[each.id]) if each.id in frames else each for each in verdicts)
 
 
-def _judge(verdict: Verdict, duet: Duet, act: Act, first: int, last: int) -> Verdict:
+def _judge(verdict: Verdict, plan: Plan, duet: Duet, act: Act, first: int, last: int) -> Verdict:
     """The verdict on an act of some frames."""
     if act.act == LOOKS and act.thing and last > first:
         kinds = _kinds(act.thing)
@@ -228,7 +228,7 @@ def _judge(verdict: Verdict, duet: Duet, act: Act, first: int, last: int) -> Ver
         if not seen:
             return verdict
         seconds = min(_seconds(duet, who, first, last, seen) for who in act.agents)
-        return replace(verdict, done=seconds >= LEAST, measure=f"looks at it for {seconds:.1f} s")
+        return decided(verdict, act, plan, done=seconds >= LEAST, measure=f"looks at it for {seconds:.1f} s")
     entry = lexicon().entries.get(act.act)
     if entry is not None and entry.thing in ("gives", "takes") and verdict.done is not None and act.happens:
         return _passed(verdict, duet, act, first, last)
@@ -242,11 +242,12 @@ def _judge(verdict: Verdict, duet: Duet, act: Act, first: int, last: int) -> Ver
     frames = range(first, min(last + round(TAKES * duet.fps), duet.num_frames))
     starts = [frame for part in parts if (frame := _starts(part, frames)) is not None]
     if not starts:
-        return replace(verdict, done=False, measure="nothing of it moves")
+        return decided(verdict, act, plan, done=False, measure="nothing of it moves")
     whole = [*parts, *(thing for thing in duet.things if thing.kind == BODIES.get(kind, kind))]
     palms = Hands.of(duet).palms[["ab".index(who) for who in act.agents], :, min(starts)].reshape(-1, 3)
     near = min(_away(palms, thing, min(starts)) for thing in whole)
-    return replace(verdict, done=near <= AT_HAND, measure=f"hand {100 * near:.0f} cm from it as it moves")
+    measure = f"hand {100 * near:.0f} cm from it as it moves"
+    return decided(verdict, act, plan, done=near <= AT_HAND, measure=measure)
 
 
 def _passed(verdict: Verdict, duet: Duet, act: Act, first: int, last: int) -> Verdict:

@@ -86,6 +86,8 @@ def test_the_part_that_is_touched_counts_by_any_of_its_names() -> None:
     assert one(told("hand-on", part="cheek"), motion).done
     assert one(told("hand-on", part="knee"), motion).done is False
     assert one(told("hand-on"), motion).done  # any part
+    sided = one(told("hand-on", part="cheek", part_side="left"), motion)
+    assert sided.done and sided.unchecked == ("which side",), "one joint is all of the face"
 
 
 def test_jumps_are_counted() -> None:
@@ -104,6 +106,14 @@ def test_a_denied_act_is_done_where_its_rule_does_not_hold() -> None:
     assert one(denied, duet()).done
     assert one(denied, DOES["raise-arm"]).done is False
     assert one(denied, duet()).words == "A does not raise the hand"
+    both = told("raise-arm", who="ab", polarity="not")
+    assert one(both, duet()).done and one(both, DOES["raise-arm"]).done is False, "one of them does it"
+
+
+def test_a_denied_act_that_is_seen_is_not_judged_where_nothing_measures_its_qualifier() -> None:
+    denied = told("raise-arm", manner=("in a zigzag",), polarity="not")
+    found = one(denied, DOES["raise-arm"])
+    assert found.done is None and found.unchecked and one(denied, duet()).done
 
 
 @pytest.mark.parametrize("modality", ["tried", "offered", "pretended", "wished"])

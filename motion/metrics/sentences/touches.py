@@ -85,6 +85,11 @@ def both_hands_meet(m: Motion, gap: float = 0.15) -> Mask:
     return np.minimum(straight, crossed) < gap
 
 
+def has_sides(part: str) -> bool:
+    """True for a part of the body with joints on either side, such as an arm, unlike the face."""
+    return any(joint.startswith(SIDES) for joint in BODY.get(part, ()))
+
+
 def to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
     """(P, T) least distance of points (P, T, 3) to a person's joints of a part, such as "arm" or "left arm"."""
     side, _, name = part.rpartition(" ")

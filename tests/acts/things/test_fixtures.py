@@ -196,6 +196,14 @@ def test_what_opens_or_closes_under_a_hand_is_done(sentence):
     assert done is True and measure.endswith("from it as it moves")
 
 
+def test_what_nothing_measures_of_an_opening_is_said():
+    sentence = "A slowly opens the window three times."
+    _, duet = furnished(sentence)
+    plan = read(sentence)
+    (judged,) = judge_things(checked(plan, Motion(duet.positions, FPS)), plan, duet, 0, duet.num_frames, ())
+    assert judged.done and {"how often", "how fast"} <= {*judged.unchecked} and "three" not in judged.words
+
+
 def test_what_opens_far_from_any_hand_of_its_agent_is_not_done():
     _, duet = furnished("A opens the window.")
     away = duet.positions.copy()
