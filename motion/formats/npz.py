@@ -205,7 +205,7 @@ def _skeleton(
         if count != SKELETONS[order].num_joints:
             raise InputError(
                 f"{label} has {count} joints a frame, but the order of {ORDERS.get(order, order)} has "
-                f"{SKELETONS[order].num_joints}: leave the order on automatic."
+                f"{SKELETONS[order].num_joints}: leave the order to be detected."
             )
         return SKELETONS[order], ()
     body = people[..., : SMPL22.num_joints, :] if count == _SMPL24 else people

@@ -72,7 +72,7 @@ SIDES = (16, 16384)
 """Pixels: the smallest and the largest width and height."""
 _IMAGE = 8000.0
 _UNNAMED = "Film"
-_BROKEN = "The landmarks of the film are damaged: reload the page and choose the film again."
+_BROKEN = "The points of the video arrived damaged: reload the page and choose the video again."
 
 
 def unpack_film(text: str) -> tuple[Landmarks, str]:
@@ -82,7 +82,7 @@ def unpack_film(text: str) -> tuple[Landmarks, str]:
         InputError: where it is not what the page sends.
     """
     if not isinstance(text, str) or len(text) > MOST_TEXT:
-        raise InputError("The landmarks of the film are too long: choose a film of 60 s or less.")
+        raise InputError("The points of the video are too many: choose a video of 60 s or less.")
     try:
         fields = json.loads(text)
     except (ValueError, RecursionError):

@@ -86,7 +86,7 @@ def person_of(landmarks: Landmarks, *, name: str = "Film") -> Filmed:
     """
     track = track_of(landmarks)
     if len(track) / track.fps < SHORTEST:
-        raise InputError("The film shows somebody for less than half a second: film for longer.")
+        raise InputError("The video shows somebody for less than half a second: record for longer.")
     _check_seen(track, landmarks)
     points = in_camera(track, landmarks)
     fitted = _fit(points, track)
@@ -107,9 +107,9 @@ def _check_seen(track: Track, landmarks: Landmarks) -> None:
         axis=0,
     )
     if abs(ends[0]) > 2 * abs(ends[1]):
-        raise InputError("The film lies on its side: turn it upright and choose it again.")
+        raise InputError("The video lies on its side: turn it upright and choose it again.")
     if ends[1] > 0:
-        raise InputError("The film stands on its head: turn it upright and choose it again.")
+        raise InputError("The video is upside down: turn it upright and choose it again.")
     if _legs_seen(track, landmarks)[seen].mean() < 0.25:
         raise InputError("The legs are not in the picture: step back so that the whole body is seen.")
 
@@ -187,7 +187,7 @@ def _notes(track: Track, landmarks: Landmarks) -> tuple[str, ...]:
 # ---- From picture to picture at even steps ------------------------------------------------------------------------
 RATES = (5.0, 30.0)
 """Frames a second that a track may have."""
-_NOBODY = "Nobody was found in the film: film one person from head to feet, in good light."
+_NOBODY = "Nobody was found in the video: film one person from head to feet, in good light."
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,7 +71,7 @@ def test_the_first_that_does_all_is_kept_and_ends_the_tries() -> None:
     assert [row["done"] for row in found.manifest["checked"]] == [True, True]
     assert found.manifest["told"] == "A raises the left arm and turns around."
     assert found.duets[0].manifest["told"] == found.manifest["told"]  # type: ignore[index, union-attr]
-    assert found.notes[0].startswith("Done at the 2nd of 4 tries: ")
+    assert found.notes[0].startswith("Done on the 2nd of 4 tries: ")
     np.testing.assert_array_equal(found.duets[0].positions, ALL.positions.astype("f4"))
 
 

@@ -353,7 +353,7 @@ def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None, unread: S
     missed = [_missed(column) for column in judged if column not in made]
     open_ = [each for each in map(_unchecked, acts) if each]
     quoted = [f"“{words}”" for words in unread]
-    heads = {"Not understood": quoted, "Not checked": open_, "Not seen": missed, "Done": done}
+    heads = {"Not understood": quoted, "Not measured": open_, "Not seen": missed, "Done": done}
     for most in range(MOST_NAMED, 0, -1):
         parts = [f"{head}: {_listed(words, most)}." for head, words in heads.items() if words]
         if len(" ".join(parts)) <= MOST_CHARACTERS:
@@ -366,7 +366,7 @@ def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None, unread: S
     won = _ORDINALS[tries["won"] - 1]
     if len(parts) > 1:
         return f"This is the {won} of {tries['asked']} tries. {' '.join(parts)}"
-    return f"Done at the {won} of {tries['asked']} tries: {_listed(done)}."
+    return f"Done on the {won} of {tries['asked']} tries: {_listed(done)}."
 
 
 def _unchecked(column: Sequence[Mapping[str, Any]]) -> str:

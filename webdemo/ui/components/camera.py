@@ -37,7 +37,7 @@ def film_source(text: str | None) -> Source:
         InputError: where it is damaged, or nobody can be followed in it.
     """
     if not text:
-        raise InputError("There is no film yet: choose a video or use the webcam.")
+        raise InputError("There is no video yet: choose one or use the webcam.")
     landmarks, name = unpack_film(text)
     filmed = person_of(landmarks, name=name)
     sure = round(100 * float(filmed.confidence.mean()))
