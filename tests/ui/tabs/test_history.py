@@ -187,3 +187,10 @@ def test_room_is_told_once_half_of_it_is_used() -> None:
     assert room_html(Usage(runs=40 * 2**20, allowed=100 * 2**20, kept=75 * 2**20)) == ""
     told = room_html(Usage(runs=60 * 2**20, allowed=100 * 2**20, kept=75 * 2**20))
     assert "60 of 100 MB used: runs 60. When runs and studies reach 75 MB" in told and "<meter" in told
+
+
+@pytest.mark.parametrize("value", [[1], {"a": None}, 10**400, "x", 1e999])
+def test_settings_of_a_file_from_elsewhere_are_shown_whatever_they_are(value: Any) -> None:
+    asked = {"kind": value, "model": value, "actor": {"name": value}, "mode": value, "role": value}
+    asked |= dict.fromkeys(("guidance", "steps", "seed"), value)
+    assert ["Steps", str(value)] in settings(asked) or isinstance(value, float)

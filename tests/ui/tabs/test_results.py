@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import threading
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,10 @@ import pytest
 
 from tests.ui.tab_events import built
 from tests.ui.tabs.generating import result_of
+from webdemo.inference.run import Cancelled
 from webdemo.ui.components.exports import KINDS, file_name, for_download, offered, write_files
 from webdemo.ui.components.film import link_address, make_film
+from webdemo.ui.tabs import results
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.view.stage import Style
 
@@ -67,6 +70,29 @@ def test_a_film_shows_the_last_result(tab: GenerateTab, monkeypatch: pytest.Monk
         assert sum(1 for _ in opened.decode(video=0)) == 30
 
 
+def test_a_drawing_ends_with_the_page_that_asked_for_it(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Gradio closes an event's iterator on its event loop: it must not wait for the drawing."""
+    left, over = threading.Event(), threading.Event()
+    ended: list[BaseException] = []
+
+    def drawn(*given: Any) -> Path:
+        left.wait(10)
+        try:
+            given[-1](1, 2)
+        except BaseException as error:
+            ended.append(error)
+        over.set()
+        return Path()
+
+    monkeypatch.setitem(results.DRAWN, "result.film", drawn)
+    drawing = tab.results.draw("result.film", result_of(tab), "{}")
+    next(drawing)
+    drawing.close()
+    left.set()
+    assert over.wait(10)
+    assert isinstance(ended[0], Cancelled)
+
+
 def test_a_film_is_what_the_player_shows(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: dict[str, Any] = {}
     monkeypatch.setattr("webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options))
@@ -97,8 +123,9 @@ def test_file_names_are_plain(prompt: str, expected: str) -> None:
 def test_runs_that_differ_have_files_that_differ_in_name() -> None:
     asked = {"seed": 7, "guidance": 2.5, "steps": 50}
     manifests = [{"request": asked}, {"request": asked | {"guidance": 3.0}}, {"request": asked, "model": "other"}]
+    manifests.append({"request": asked, "weights_sha256": "other"})
     names = [file_name("hug", manifest) for manifest in manifests]
-    assert len(set(names)) == 3 and file_name("hug", dict(manifests[0])) == names[0]
+    assert len(set(names)) == 4 and file_name("hug", dict(manifests[0])) == names[0]
 
 
 @pytest.mark.parametrize("shown", ["[" * 2000, f'{{"frame": {"9" * 400}, "yaw": NaN}}', '{"frame": 1e999}', "{", "7"])

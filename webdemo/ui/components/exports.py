@@ -234,6 +234,6 @@ def file_name(prompt: str, manifest: Mapping[str, object]) -> str:
         name = f"{name}-{word}" if name else word
     request = manifest.get("request")
     seed = request.get("seed") if isinstance(request, Mapping) else None
-    described = {key: manifest.get(key) for key in ("model", "weights", "request")}
+    described = {key: manifest.get(key) for key in ("model", "weights_sha256", "request")}
     digest = hashlib.blake2b(json.dumps(described, sort_keys=True, default=str).encode(), digest_size=2).hexdigest()
     return (name or "motion") + (f"-seed{seed}" if isinstance(seed, int) else "") + f"-{digest}"

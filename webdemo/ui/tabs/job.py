@@ -69,8 +69,8 @@ class JobTab(ABC):
         self.page = page
         self.results = Results(page, self.prefix)
         self.grids = Grids(self)
-        self._cancelled: set[str] = set()
-        """Sessions whose last run here was cancelled."""
+        self._cancelled: dict[str, bool] = {}
+        """The sessions with a run here, and whether it was cancelled."""
 
     # ---- what a tab says -------------------------------------------------------------------------
 
@@ -248,9 +248,9 @@ class JobTab(ABC):
 
     def _steps(self, session: str, fields: Mapping[str, Any]) -> Iterator[Named]:
         """The updates of a run, each with what it changes."""
-        self._cancelled.discard(session)
-        yield {"player": busy("Starting …"), "line": status("Starting …", tone="busy")}
+        self._cancelled[session] = False
         try:
+            yield {"player": busy("Starting …"), "line": status("Starting …", tone="busy")}
             fields = self.settled(fields)
             if fields.get("seed", 0) is None:
                 fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
@@ -263,6 +263,8 @@ class JobTab(ABC):
             yield self._stopped(str(stopped), "warning")
         except Exception as error:
             yield self._stopped(error_line(error), "error")
+        finally:
+            self._cancelled.pop(session, None)
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Named]:
         """Runs what the fields ask for and shows it."""
@@ -290,7 +292,7 @@ class JobTab(ABC):
         shown_at = 0.0
         try:
             for event in self.page.runs.run(session, wanted):
-                if session in self._cancelled:  # also before the run was known, or between two of a grid
+                if self._cancelled.get(session):  # also before the run was known, or between two of a grid
                     raise Cancelled
                 if isinstance(event, Result):
                     return event
@@ -335,8 +337,10 @@ class JobTab(ABC):
 
     def cancel(self, request: gr.Request) -> None:
         """Stops the session's run within one denoising step, or as soon as what it needs was read."""
-        self._cancelled.add(str(request.session_hash))
-        self.page.runs.cancel(str(request.session_hash))
+        session = str(request.session_hash)
+        if session in self._cancelled:
+            self._cancelled[session] = True
+        self.page.runs.cancel(session)
 
     # ---- what is shown and kept ------------------------------------------------------------------
 

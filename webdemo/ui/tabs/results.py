@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
 from functools import partial, wraps
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
+from webdemo.inference.run import Cancelled
 from webdemo.ui.components.exports import (
     KINDS,
     PURPOSES,
@@ -181,20 +183,29 @@ class Results:
         """
         label = say(key)
         off = gr.update(value=None, interactive=False)
-        done = [0.0]
+        done, left = [0.0], Event()
         folder = Path()
+
+        def drawn(number: int, frames: int) -> None:
+            done.append(number / frames)
+            if left.is_set():
+                raise Cancelled
+
+        pool = ThreadPoolExecutor(1)
         try:
             folder = self.page.shelf.folder()
-            with ThreadPoolExecutor(1) as pool:
-                drawing = pool.submit(DRAWN[key], record, shown, folder, lambda n, all: done.append(n / all))
-                while not drawing.done():
-                    yield gr.skip(), gr.update(value=f"{label} {100 * done[-1]:.0f} %"), off
-                    wait([drawing], timeout=0.5)
+            drawing = pool.submit(DRAWN[key], record, shown, folder, drawn)
+            while not drawing.done():
+                yield gr.skip(), gr.update(value=f"{label} {100 * done[-1]:.0f} %"), off
+                wait([drawing], timeout=0.5)
             path = drawing.result()
         except Exception as error:
             line = error_line(without_place(error, folder))
             yield status(line, tone="error"), gr.update(value=label), gr.skip()
             return
+        finally:  # Gradio closes this on its event loop where the page was left: nobody waits for the drawing
+            left.set()
+            pool.shutdown(wait=False)
         yield gr.skip(), gr.update(value=label), gr.update(value=path, interactive=True)
 
     @said

@@ -123,10 +123,10 @@ def settings(asked: Mapping[str, Any]) -> list[list[str]]:
     for key, name in texts().items():
         kind, _, field = key.partition(".")
         value = asked.get(field) if kind == "settings" else None
-        if value is not None:
-            if isinstance(value, bool):
-                value = "on" if value else "off"
-            rows.append([name, f"{value:g}" if field != "seed" and not isinstance(value, str) else str(value)])
+        if isinstance(value, bool):
+            rows.append([name, "on" if value else "off"])
+        elif value is not None:  # of a file from elsewhere it may be anything
+            rows.append([name, f"{value:g}" if isinstance(value, float) else str(value)])
     return [pair for pair in rows if pair[1]]
 
 
