@@ -1,4 +1,4 @@
-"""A story is read from TOML and written again; a mistake is named with its line and key."""
+"""A story is read from TOML; a mistake is named with its line and key."""
 
 import time
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 
 from motion import SMPL22, Duet, InputError
 from motion.formats import write
-from webdemo.inference.story import Beat, FloorPoint, SceneRequest, read_story, read_words, write_story
+from webdemo.inference.story import FloorPoint, SceneRequest, read_story, read_words
 
 STORY = """
 seed = 4
@@ -29,14 +29,12 @@ points = [[0, 0, 1.5], [2, 0.5, 2, 90], [3, 0, 2]]
 """
 
 
-def test_a_story_is_read_and_written() -> None:
+def test_a_story_is_read() -> None:
     found = read_story(STORY)
     assert [beat.words for beat in found["beats"]] == ['They "meet".', ""]
     assert found["beats"][1].seed == 9 and found["seed"] == 4 and found["tries"] == 3 and found["loop"] is True
     assert found["paths"][0].points[1] == FloorPoint(0.5, 2, 2, 90)
-    request = SceneRequest(**found)
-    again = SceneRequest(**read_story(write_story(request)))
-    assert again.to_dict() == request.to_dict()
+    assert SceneRequest(**found).tries == 3
 
 
 @pytest.mark.parametrize(
@@ -115,7 +113,7 @@ def test_full_stops_in_a_sentence_are_no_parts_of_a_key():
 def test_the_largest_story_is_read():
     """As many beats, points and poses as a scene may have, with all their digits."""
     dice = np.random.default_rng(0)
-    text = write_story(SceneRequest(beats=[Beat("x" * 499, seconds=3.0, seed=4294967295)] * 60))
+    text = f'\n[[beat]]\nwords = "{"x" * 499}"\nseconds = 3.0\nseed = 4294967295\n' * 60
     for person in "ab":
         points = dice.uniform(-8, 8, (600, 4)).round(4).tolist()
         text += f'\n[[path]]\nperson = "{person}"\npoints = {points}\n'

@@ -9,7 +9,7 @@ from .beats import Beat
 from .poses import Pose
 from .request import SceneProgress, SceneRequest
 from .sentences import in_time, split_sentence
-from .toml import read_story, read_words, write_story
+from .toml import read_story, read_words
 
 __all__ = [
     "Beat",
@@ -22,5 +22,4 @@ __all__ = [
     "read_story",
     "read_words",
     "split_sentence",
-    "write_story",
 ]

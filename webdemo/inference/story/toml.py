@@ -1,4 +1,4 @@
-"""Stories as TOML text: read with errors that name the line and the key, and written to be read again.
+"""Stories as TOML text, read with errors that name the line and the key.
 
 ::
 
@@ -31,13 +31,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomlkit
 
 from motion import InputError
 from motion.formats import read
-from webdemo.inference.methods import method
 from webdemo.inference.requests.actor import ROLES
-from webdemo.inference.requests.paths import FloorPath, FloorPoint, path_of
+from webdemo.inference.requests.paths import FloorPath, path_of
 
 from .beats import MOST_BEATS, Beat, beat_of
 from .poses import MOST_POSES, Pose
@@ -138,49 +136,6 @@ def read_words(text: str, go_on: Callable[[], None] = lambda: None) -> dict[str,
     if _LOOKS_LIKE_TOML.search(text[:MOST_CHARACTERS]):
         return read_story(text)
     return {"beats": split_sentence(text, go_on)}
-
-
-def write_story(request: SceneRequest) -> str:
-    """A story as TOML text that :func:`read_story` reads as the same fields; a given motion is not part of it."""
-    story = tomlkit.document()
-    story["seed"] = request.seed
-    defaults = {name: getattr(SceneRequest, name) for name in _SETTINGS if name != "seed"}
-    for name, default in (defaults | {"steps": method(request.model, "scene").steps}).items():
-        if getattr(request, name) != default:
-            story[name] = getattr(request, name)
-    tables = {
-        "beat": [_beat_table(beat) for beat in request.beats],
-        "path": [{"person": path.person, "points": list(map(_point, path.points))} for path in request.paths],
-        "pose": [
-            {"person": p.person, "seconds": p.seconds, "positions": np.asarray(p.positions).tolist()}
-            for p in request.poses
-        ],
-    }
-    return tomlkit.dumps({**story, **{name: listed for name, listed in tables.items() if listed}})
-
-
-def _point(p: FloorPoint) -> list[float] | dict[str, float]:
-    """A point as a row, or with its names where a row would not say what it is."""
-    row = {name: value for name in ("seconds", "x", "z", "heading") if (value := getattr(p, name)) is not None}
-    if p.seconds is None and p.heading is not None:
-        return row
-    return [round(value, 4) if p.seconds is not None else value for value in row.values()]
-
-
-def _beat_table(beat: Beat) -> dict[str, Any]:
-    table: dict[str, Any] = {name: value for name in ("words", "a", "b") if (value := getattr(beat, name))}
-    if beat.seconds is not None:
-        whole = float(beat.seconds).is_integer()
-        table["seconds"] = int(beat.seconds) if whole else beat.seconds
-    if beat.seed is not None:
-        table["seed"] = beat.seed
-    if beat.acts:
-        acts = table["acts"] = tomlkit.array().multiline(True)
-        for act in beat.to_dict()["acts"]:
-            row = tomlkit.inline_table()
-            row.update(act)
-            acts.append(row)
-    return table
 
 
 def _sentence(error: Exception) -> str:
