@@ -216,8 +216,8 @@ def of_each(acts: Sequence[Act], known: Lexicon) -> tuple[str, str]:
 def short(act: Act, entry: Entry | None) -> str:
     """An act in a few words, beside its people: "pats on right shoulder ×2", "face each other", "does not wave".
 
-    They are those of the entry's caption, or of its name where the caption describes the act by another verb, since
-    it keeps to the words of the network. An act without an entry goes by its name.
+    They are those of the entry's ``chip`` or caption, or of its name where the caption describes the act by another
+    verb, since it keeps to the words of the network. An act without an entry goes by its name.
     """
     both = len(act.agents) == 2
     ahead = _AHEAD.get(act.modality, "")
@@ -249,13 +249,13 @@ def _phrase(act: Act, entry: Entry | None, both: str) -> str:
     named = _OTHER.sub(f" {both or 'the other'}", named).removesuffix(" person")
     if not entry.caption:
         return named
-    act, caption = with_thing(act, entry.caption[0])
+    act, caption = with_thing(act, entry.chip or entry.caption[0])
     verb = _VERB.search(caption)
     other = verb is None or verb[1] != name[0] or caption.startswith("{b}")
     no_limb = "{limb}" in caption and not act.part
     # "opens window", where the caption has a door, which the network knows
     named_thing = bool(act.thing) and "thing" in name and "{thing}" not in caption
-    if no_limb or named_thing or (other and "{limb}" not in caption and "{part}" not in caption):
+    if not entry.chip and (no_limb or named_thing or (other and "{limb}" not in caption and "{part}" not in caption)):
         verbs = {verb for frame in entry.frames for verb in Frame.parse(frame).verbs} | {"be"}
         if name[0] in verbs and not verbs.intersection(name[1:]):
             return named

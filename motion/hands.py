@@ -7,8 +7,10 @@ is said.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,23 +30,12 @@ MOST_GRIPS = 400
 """Grips beside a motion, at most."""
 
 
-def _shape(*bends: tuple[float, float, float], close: float = 0.8) -> Array:
-    """Bends in degrees, three a finger from the thumb on."""
-    return np.concatenate([np.deg2rad(np.array(bends, dtype=float)).ravel(), np.full(5, close)])
-
-
-_CURLED = ((75, 95, 60),) * 4
+_FILE = Path(__file__).resolve().parents[1] / "static" / "player" / "hands.json"
 SHAPES: dict[str, Array] = {
-    "relaxed": _shape((8, 12, 18), (16, 22, 12), (22, 28, 15), (27, 31, 17), (31, 31, 17), close=0.75),
-    "flat": _shape((0, 4, 4), (0, 2, 2), (0, 2, 2), (1, 3, 2), (2, 4, 3), close=0.9),
-    "fist": _shape((34, 34, 45), *_CURLED, close=1.0),
-    "point": _shape((34, 34, 45), (2, 4, 3), *_CURLED[1:], close=0.9),
-    "grasp": _shape((26, 22, 24), (48, 52, 28), (52, 54, 28), (56, 55, 30), (58, 54, 30), close=0.9),
-    "clasp": _shape((18, 16, 16), (26, 34, 20), (30, 38, 22), (34, 40, 24), (36, 40, 24), close=0.95),
-    "thumbs up": _shape((-22, -8, -12), *_CURLED, close=1.0),
-    "pinch": _shape((28, 26, 26), (46, 42, 22), (30, 34, 18), (32, 34, 18), (34, 34, 18), close=0.8),
+    name: np.concatenate([np.deg2rad(np.array(shape["bends"], dtype=float)).ravel(), np.full(5, float(shape["close"]))])
+    for name, shape in json.loads(_FILE.read_text(encoding="utf-8")).items()
 }
-"""The finger shapes that there are, (20,) each."""
+"""The finger shapes that there are, (20,) each: bends in degrees, three a finger from the thumb on, in the file."""
 
 
 @dataclass(frozen=True)

@@ -67,17 +67,16 @@ def checked(looks: Any) -> tuple[str, str]:
     raise InputError(f"The looks of two people are two of {', '.join(LOOKS)}.")
 
 
-# ---- Colours, which ``static/player/colours.js`` holds for files, films and the page alike ---------------------------
+# ---- Colours, which ``static/player/colours.json`` holds for files, films and the page alike -------------------------
 Colour: TypeAlias = tuple[float, float, float]
 
-COLOURS = Path(__file__).resolve().parents[1] / "static" / "player" / "colours.js"
+COLOURS = Path(__file__).resolve().parents[1] / "static" / "player" / "colours.json"
 
 
 @cache
 def themes() -> dict[str, dict[str, Any]]:
-    """The JSON that the file exports: each theme's colours (``"#rrggbb"``) and lamps under its name."""
-    _, data = COLOURS.read_text(encoding="utf-8").split("export default", 1)
-    by_name: dict[str, dict[str, Any]] = json.loads(data.strip().removesuffix(";"))
+    """Each theme's colours (``"#rrggbb"``, sRGB) and lamps under its name."""
+    by_name: dict[str, dict[str, Any]] = json.loads(COLOURS.read_text(encoding="utf-8"))
     return by_name
 
 

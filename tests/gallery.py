@@ -6,10 +6,10 @@ import json
 
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.run import Result
-from webdemo.ui.components.gallery import GALLERY_FOLDER
+from webdemo.ui.components.gallery import Gallery
 from webdemo.view.thumbnail import thumbnail
 
-SCENES = GALLERY_FOLDER / "scenes.json"
+SCENES = Gallery.template.with_name("scenes.json")
 
 
 def main() -> None:

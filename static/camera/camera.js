@@ -118,7 +118,7 @@ class CameraPanel extends Panel {
     });
     if (!landmarks) return;
     this.state("idle");
-    this.say(say("camera.sent"));
+    this.say(""); // the tab says what comes of it
     this.send(JSON.stringify({ name, ...landmarks.pack() }));
   }
 

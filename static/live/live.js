@@ -135,7 +135,6 @@ class LivePanel extends Panel {
     this.hand(JSON.stringify({ partner: last.partner, positions: last.pack() }));
     this.last = null;
     this.keep.hidden = true;
-    this.say(say("live.kept"));
   }
 
   /** Sends what has been seen as one message, and shows what is answered. */

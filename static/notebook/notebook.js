@@ -123,9 +123,11 @@ export class Notebook {
 
   type(event) {
     if (!event.target.matches(".pdn-card")) return;
-    if (event.key === "Enter") this.choose(event.target, {}), this.act("open");
-    else if (event.key === " ") this.choose(event.target, { several: true });
-    else if (event.key === "Delete") this.act("remove");
+    const act = { Enter: "open", Delete: "remove" }[event.key];
+    if (act) {
+      if (act === "open" || !this.chosen.has(event.target.dataset.id)) this.choose(event.target, {});
+      this.find(`[data-act=${act}]`).click(); // does nothing where that cannot be done
+    } else if (event.key === " ") this.choose(event.target, { several: true });
     else if (event.key === "ArrowDown") event.target.nextElementSibling?.focus();
     else if (event.key === "ArrowUp") event.target.previousElementSibling?.focus();
     else return;
@@ -135,7 +137,7 @@ export class Notebook {
   choose(card, { several = false, range = false }) {
     const { id } = card.dataset;
     const ids = [...this.entries.keys()];
-    if (range && this.last) {
+    if (range && ids.includes(this.last)) {
       const [from, to] = [ids.indexOf(this.last), ids.indexOf(id)].sort((a, b) => a - b);
       for (const each of ids.slice(from, to + 1)) this.chosen.add(each);
     } else if (several) this.chosen.has(id) ? this.chosen.delete(id) : this.chosen.add(id);

@@ -1,7 +1,7 @@
 // Moving thumbnails: the browser's side of webdemo/view/thumbnail.py. Those in view move, ten times a second.
 
 import { fromBase64 } from "../player/base64.js";
-import colours from "../player/colours.js";
+import colours from "../player/colours.json" with { type: "json" };
 
 const JOINTS = 13;
 const [PELVIS, NECK, HEAD, SHOULDERS, ELBOWS, WRISTS, KNEES, ANKLES] = [0, 1, 2, [3, 4], [5, 6], [7, 8], [9, 10], [11, 12]];

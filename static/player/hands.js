@@ -1,25 +1,16 @@
 // Finger shapes: motion/hands.py in the browser, number for number (a test compares the bodies).
 
 import { fromBase64 } from "./base64.js";
+import shapes from "./hands.json" with { type: "json" };
 import { apply, multiply, rotation, smoothStep } from "./pose.js";
 
 const FINGERS = 5;
 const BLEND = 0.22; // seconds over which fingers go from one shape to another
 
-/** Bends in degrees, three a finger from the thumb on, and how far fingers are closed: 20 numbers. */
-const shape = (bends, close) => Float64Array.from([...bends.flat().map((v) => (v * Math.PI) / 180), ...Array(FINGERS).fill(close)]);
-const CURLED = [75, 95, 60];
-
-export const SHAPES = {
-  relaxed: shape([[8, 12, 18], [16, 22, 12], [22, 28, 15], [27, 31, 17], [31, 31, 17]], 0.75),
-  flat: shape([[0, 4, 4], [0, 2, 2], [0, 2, 2], [1, 3, 2], [2, 4, 3]], 0.9),
-  fist: shape([[34, 34, 45], CURLED, CURLED, CURLED, CURLED], 1),
-  point: shape([[34, 34, 45], [2, 4, 3], CURLED, CURLED, CURLED], 0.9),
-  grasp: shape([[26, 22, 24], [48, 52, 28], [52, 54, 28], [56, 55, 30], [58, 54, 30]], 0.9),
-  clasp: shape([[18, 16, 16], [26, 34, 20], [30, 38, 22], [34, 40, 24], [36, 40, 24]], 0.95),
-  "thumbs up": shape([[-22, -8, -12], CURLED, CURLED, CURLED, CURLED], 1),
-  pinch: shape([[28, 26, 26], [46, 42, 22], [30, 34, 18], [32, 34, 18], [34, 34, 18]], 0.8),
-};
+/** Bends in radians, three a finger from the thumb on, and how far fingers are closed: 20 numbers a shape. */
+export const SHAPES = Object.fromEntries(Object.entries(shapes).map(([name, { bends, close }]) => [
+  name, Float64Array.from([...bends.flat().map((v) => (v * Math.PI) / 180), ...Array(FINGERS).fill(close)]),
+]));
 export const RELAXED = [SHAPES.relaxed, SHAPES.relaxed];
 
 /** The shapes of a person's hands, left first, at a fractional frame; `grips` are [person, side, shape, start, stop]. */

@@ -15,6 +15,13 @@ export function project(point, matrix, width, height, fieldOfView) {
   return [width / 2 + scale * at(0), height / 2 - scale * at(1), depth];
 }
 
+/** Puts an element with its middle, or its foot, at a place that project() gave; the nearer of two lies on top. */
+export function put(element, [x, y, depth], foot = false) {
+  element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, ${foot ? -100 : -50}%)`;
+  element.style.zIndex = String(1000 - Math.round(10 * Math.min(depth, 99)));
+  element.style.visibility = depth > 0.1 ? "visible" : "hidden";
+}
+
 const ROLES = { given: "player.given", generated: "player.generated", "acts first": "player.acts_first", answers: "player.answers" };
 
 /** "A · actor", or "A" alone where the role says no more. */
@@ -53,13 +60,10 @@ export class Labels {
       if (overlap > 0 && overlap < 2 * LABEL_PX) lifted[far][1] -= overlap * Math.min(Math.max(-gap / SPACE_PX, 0), 1);
     }
     this.labels.forEach((label, i) => {
-      const depth = spots[i][2];
       const half = this.widths[i] / 2;
       const x = Math.min(Math.max(lifted[i][0], half), Math.max(this.host.clientWidth - half, half));
       const y = Math.max(lifted[i][1], LABEL_PX); // never above the stage, as over a shoulder
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -100%)`;
-      label.style.visibility = depth > 0.1 ? "visible" : "hidden";
-      label.style.zIndex = String(1000 - Math.round(10 * Math.min(depth, 99)));
+      put(label, [x, y, spots[i][2]], true);
     });
   }
 }

@@ -1,14 +1,18 @@
 // The colours of both themes as numbers. A is blue and B orange, a pair that all common kinds of colour-blindness
 // keep apart. On skeletons left limbs are a lighter tint and right limbs a deeper shade of the same hue.
 // Everything is greyer while a motion is given, before what was predicted.
+//
+// Of colours.json, which Python reads as well (motion/looks.py), `floor` is the floor at the camera's target, `far` the
+// floor in the distance, `horizon` the sky right above it; `people` are the middle, left and right limbs of A's and B's
+// skeletons, `given` those of a motion that is given.
 
-import COLOURS from "./colours.js";
+import COLOURS from "./colours.json" with { type: "json" };
 
 const REACH = 18; // metres from the camera's target after which the floor is as dim as it gets
 
 export const mix = (a, b, t) => [0, 1, 2].map((i) => a[i] + t * (b[i] - a[i]));
 export const smooth = (t) => t * t * (3 - 2 * t);
-const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16) / 255);
+export const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16) / 255);
 const each = (named, change) => Object.fromEntries(Object.entries(named).map(([name, value]) => [name, change(value)]));
 const limbs = ([middle, left, right]) => each({ middle, left, right }, hex);
 const greyer = (zones) => each(zones, (color) => {

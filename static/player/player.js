@@ -75,6 +75,7 @@ export class Player {
   /** Shows a payload of webdemo/view/payload.py, or the empty state for null. */
   load(payload) {
     this.directing.end();
+    this.root.toggleAttribute("data-stream", Boolean(payload?.stream)); // which is no result yet
     if (!payload?.samples?.length) {
       this.data = null;
       this.clock.pause();

@@ -3,6 +3,7 @@
 
 import { node } from "./node.js";
 import { FIELD_OF_VIEW, axesOf } from "./orbit.js";
+import { put } from "./overlay.js";
 import { HANDLES, carry, pull } from "./reach.js";
 import { say } from "../texts.js";
 
@@ -61,12 +62,9 @@ export class Posing {
   place(spots) {
     this.spots = spots;
     for (const handle of this.handles) {
-      const [x, y, depth] = spots[handle.dataset.person][handle.dataset.joint];
-      handle.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
-      handle.style.zIndex = String(1000 - Math.round(10 * Math.min(depth, 99)));
-      const shown = depth > 0.1;
-      if (!shown && handle === document.activeElement) this.focus(this.player.root);
-      handle.style.visibility = shown ? "visible" : "hidden";
+      const spot = spots[handle.dataset.person][handle.dataset.joint];
+      if (spot[2] <= 0.1 && handle === document.activeElement) this.focus(this.player.root);
+      put(handle, spot);
     }
   }
 

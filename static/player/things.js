@@ -2,8 +2,8 @@
 
 import { fromBase64 } from "./base64.js";
 import { Figure, normalsOf } from "./body.js";
+import { hex } from "./palette.js";
 
-const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16) / 255);
 const SHADE = 0.3; // darkness of the shadow for each square metre of surface, as in webdemo/view/theme.py
 const AT = 1.5; // metres from a window or the like within which somebody is at it, as in webdemo/view/camera.py
 const HIGHEST = 1.8; // metres over the floor from which nothing is shaded

@@ -7,7 +7,7 @@ follow(new URLSearchParams(location.search).get("theme")); // an embedding page 
 
 const motion = document.getElementById("motion");
 if (motion) {
-  const props = { value: JSON.parse(motion.textContent), busy: "", progress: null, live: null };
+  const props = { value: JSON.parse(motion.textContent), busy: "", progress: null };
   mount(document.querySelector(".psh-stage"), props, () => {}, null, "player.cannot_show");
 }
 for (const code of document.querySelectorAll(".psh-more textarea")) code.addEventListener("focus", () => code.select());

@@ -338,9 +338,7 @@ class Editor {
     this.find("[data-field=loop]").checked = story.loop;
     this.find("[data-field=from]").value = story.span?.[0] ?? "";
     this.find("[data-field=to]").value = story.span?.[1] ?? "";
-    for (const act of ["split", "left", "right", "again", "delete"]) {
-      this.find(`[data-act=${act}]`).disabled = !beat;
-    }
+    for (const part of this.root.querySelectorAll("[data-of=beat]")) part.disabled = !beat;
     this.find("[data-act=undo]").disabled = !this.past.before.length;
     this.find("[data-act=redo]").disabled = !this.past.after.length;
     this.find("[data-act=no-span]").disabled = !story.span;

@@ -1,4 +1,4 @@
-// A person votes: pairs come one after the other, and the keys 1, 2 and = answer (webdemo/server/http/study_pages.py).
+// A person votes: pairs come one after the other, and the keys 1, 2 and = answer (webdemo/server/http/public_pages.py).
 
 import { mount } from "../player/main.js";
 import { follow } from "../player/palette.js";
@@ -15,7 +15,7 @@ const buttons = [...main.querySelectorAll("[data-answer]")];
 follow();
 
 // What the player expects of the component that holds it in the lab's page.
-const props = { value: null, busy: say("vote.opening"), progress: null, live: null };
+const props = { value: null, busy: say("vote.opening"), progress: null };
 const watchers = [];
 function show(changes) {
   Object.assign(props, changes);

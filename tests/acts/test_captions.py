@@ -44,7 +44,7 @@ def test_third_persons_of_verbs() -> None:
         ({"act": "curtsy"}, "curtsies"),  # not the caption's "bows"
         ({"act": "raise-leg", "part": "leg", "side": "left"}, "lifts left leg"),
         ({"act": "raise-leg"}, "raises leg"),
-        ({"act": "be-twirled", "patient": "b"}, "is twirled"),
+        ({"act": "be-twirled", "patient": "b"}, "turns under arm"),  # its chip
         ({"act": "lift-spin", "patient": "b"}, "picks up and spins around"),
         ({"act": "put-down-thing", "thing": "cup"}, "puts down cup"),
         ({"act": "open-thing", "thing": "window"}, "opens window"),  # not the caption's door

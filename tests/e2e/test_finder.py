@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 from playwright.sync_api import Page, expect
 
-from webdemo.ui.components.gallery import GALLERY_FOLDER
+from webdemo.ui.components.gallery import Gallery
 
 from .playing import until
 from .serving import live
@@ -52,7 +52,7 @@ def test_an_act_and_a_run_are_found_by_keyboard_and_an_example_by_one_press(
     page.get_by_role("button", name="All examples").click()
     scenes = page.locator("#gallery .pdx-scene")
     expect(scenes).to_have_count(24)
-    kept = json.loads((GALLERY_FOLDER / "scenes.json").read_text(encoding="utf-8"))["scenes"][5]
+    kept = json.loads(Gallery.template.with_name("scenes.json").read_text(encoding="utf-8"))["scenes"][5]
     scenes.nth(5).click()
     expect(page.locator("#prompt textarea")).to_have_value(kept["prompt"])
     expect(page.locator("#player .pdd-title")).to_have_text(kept["prompt"])

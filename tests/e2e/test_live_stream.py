@@ -47,7 +47,7 @@ def keep_it(page: Page) -> None:
     assert page.evaluate("window.__pasdedeux.positions.length") == 2
     assert len(before) == 2 and frame is not None
     expect(page.locator(f"{PANEL} .pdlive-keep")).to_be_hidden()
-    expect(page.locator(f"{PANEL} .pdcam-line")).to_have_text("Kept: the result is on the stage.")
+    expect(page.locator(f"{PANEL} .pdcam-line")).to_be_empty()  # the tab says it
 
 
 def test_a_recorded_person_is_answered_as_they_move(lab: str, open_page: Callable[..., Page]) -> None:
@@ -85,6 +85,12 @@ def test_a_recorded_person_is_answered_as_they_move(lab: str, open_page: Callabl
     assert 0.3 < math.dist(person[0], partner[0]) < 4
 
     keep_it(page)
+    expect(page.locator("#react-share")).to_be_visible()
+    start(page, "clip")
+    two_people(page)
+    expect(page.locator("#react-share")).to_be_hidden()  # a stream is no result yet
+    page.get_by_role("button", name="Push").click()
+    expect(line).to_contain_text("something else is shown now", timeout=SLOW)
     page.get_by_role("button", name="Push").click()
     expect(line).to_be_empty()  # what was kept is no longer on the stage
     page.wait_for_function("window.__pasdedeux?.positions?.length === 1", timeout=SLOW)

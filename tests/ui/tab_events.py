@@ -32,6 +32,6 @@ def changes(names: Iterable[str], updates: Iterable[Any]) -> dict[str, Any]:
 
 
 def taken(panel: SourcePanel, updates: Mapping[Any, Any]) -> dict[str, Any]:
-    """Updates of a panel by the names of its parts, without those that change nothing."""
+    """Updates of a panel by the names of its parts, without those that change nothing, or parts of the tab."""
     names = {id(part): name for shown in (panel.results, panel) for name, part in vars(shown).items()}
-    return {names[id(part)]: update for part, update in updates.items() if update != gr.skip()}
+    return {names[id(part)]: update for part, update in updates.items() if id(part) in names and update != gr.skip()}

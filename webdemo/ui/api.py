@@ -137,11 +137,13 @@ class Endpoint(ABC):
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
         except Exception as error:
             raise gr.Error(error_line(error), print_exception=False) from None
+        given = getattr(request, "actor", None) or getattr(request, "motion", None)
+        of_reading = dict.fromkeys(note for person in getattr(given, "people", ()) for note in person.notes)
         answer: dict[str, Any] = {
             "manifest": result.manifest,
             "readouts": list(result.readouts),
             "timings": result.timings,
-            "notes": [*reading_notes(request), *result.notes],
+            "notes": [*of_reading, *result.notes],
             "files": {key: [path.name for path in paths] for key, paths in files.items()},
         }
         if isinstance(result, PredictResult):
@@ -157,12 +159,6 @@ class Endpoint(ABC):
             share = (event.step, event.total) if event.stage == "sample" else (0, 1)
             progress(share, desc=progress_line(event), unit=event.unit)
         raise Cancelled("The run ended without a result.")
-
-
-def reading_notes(request: Any) -> list[str]:
-    """Sentences on how well the motion that a request was given could be read."""
-    given = getattr(request, "actor", None) or getattr(request, "motion", None)
-    return list(dict.fromkeys(note for person in getattr(given, "people", ()) for note in person.notes))
 
 
 class GenerateEndpoint(Endpoint):

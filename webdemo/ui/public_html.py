@@ -1,4 +1,5 @@
-"""Pages that show a result to anybody, with facts around it or as the player alone for a frame of another site's.
+"""Pages that show a result to anybody, with facts around it or as the player alone for a frame of another site's, and
+those on which people vote.
 
 The server sends them under a public address (:mod:`webdemo.server.http.public_pages`). What somebody wrote
 is text in them, and the motion is data that no browser runs.
@@ -10,6 +11,7 @@ import html
 import time
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader
 
@@ -22,10 +24,10 @@ from webdemo.ui.text.texts import TEXTS, TEXTS_JS, say
 from webdemo.ui.theme import COLOURS
 from webdemo.view.payload import Payload
 
-SHARE_FOLDER = PLAYER_FOLDER.parent / "share"
-_LOADED = (PLOTLY_JS, COLOURS, TEXTS_JS, TEXTS, SHARE_FOLDER / "share.js", SHARE_FOLDER / "share.css")
-_PLAYED = (PLAYER_FOLDER / "player.css", *sorted(PLAYER_FOLDER.rglob("*.js")), *sorted(BODIES_FOLDER.glob("*.json")))
-FILES = {path.relative_to(STATIC).as_posix(): path for path in (*_LOADED, *_PLAYED)}
+_PAGES = (STATIC / "share", STATIC / "study")
+_ALL = [path for folder in (*_PAGES, PLAYER_FOLDER, BODIES_FOLDER) for path in sorted(folder.rglob("*.*"))]
+_LOADED = [PLOTLY_JS, COLOURS, TEXTS_JS, TEXTS, *(path for path in _ALL if path.suffix in (".js", ".json", ".css"))]
+FILES = {path.relative_to(STATIC).as_posix(): path for path in _LOADED}
 """All that the pages load, by the names under which they do."""
 
 
@@ -52,12 +54,17 @@ def player_html(entry: Entry, payload: Payload, place: Place, *, until: float) -
     """A page with one result; ``until`` is when it ends, in seconds since 1970."""
     day = time.strftime("%d %B %Y", time.gmtime(until)).lstrip("0")
     code = frame_code(place.embed, entry.title) if place.embed else ""
-    return _page(entry, payload, place, facts=caption(entry), code=code, day=day)
+    return _page("page.html", place, title=entry.title, motion=payload, facts=caption(entry), code=code, day=day)
 
 
 def embed_html(entry: Entry, payload: Payload, place: Place) -> str:
     """The player alone, as large as the frame that holds it."""
-    return _page(entry, {**payload, "title": entry.title}, place)
+    return _page("page.html", place, title=entry.title, motion={**payload, "title": entry.title})
+
+
+def study_html(question: str, here: str, place: Place) -> str:
+    """The page of a study, at the address ``here``, on which people vote."""
+    return _page("study.html", place, question=question, here=here)
 
 
 def frame_code(address: str, title: str) -> str:
@@ -68,14 +75,13 @@ def frame_code(address: str, title: str) -> str:
     )
 
 
-def _page(entry: Entry, payload: Payload, place: Place, **shown: str) -> str:
+def _page(template: str, place: Place, **shown: Any) -> str:
     player = (PLAYER_FOLDER / "player.html").read_text(encoding="utf-8")
-    page = _templates().get_template("page.html")
-    return page.render(title=entry.title, motion=payload, player=player, files=place.files, say=say, **shown)
+    return _templates().get_template(template).render(player=player, files=place.files, say=say, **shown)
 
 
 @cache
 def _templates() -> Environment:
-    made = Environment(loader=FileSystemLoader(SHARE_FOLDER), autoescape=True)
+    made = Environment(loader=FileSystemLoader(_PAGES), autoescape=True)
     made.policies["json.dumps_kwargs"] = {"separators": (",", ":")}
     return made

@@ -3,7 +3,7 @@
 
 import { node } from "../node.js";
 import { FIELD_OF_VIEW, axesOf } from "../orbit.js";
-import { project } from "../overlay.js";
+import { project, put } from "../overlay.js";
 import { floorUnder, inside, lengthOf, lines, named, onFloor, STEP } from "./walks.js";
 import { say } from "../../texts.js";
 
@@ -185,13 +185,12 @@ export class Drawing {
   /** Puts handles and lengths where they belong in the picture. */
   place({ matrix }) {
     const { clientWidth: width, clientHeight: height } = this.player.pane.host;
-    const put = (element, place, lift = 0) => {
+    const lay = (element, place, lift = 0) => {
       const [x, y, depth] = project(onFloor(place), matrix, width, height, FIELD_OF_VIEW);
-      element.style.transform = `translate(${x.toFixed(1)}px, ${(y + lift).toFixed(1)}px) translate(-50%, -50%)`;
-      element.style.visibility = depth > 0.1 ? "visible" : "hidden";
+      put(element, [x, y + lift, depth]);
     };
     const places = this.on ? this.places : [];
-    for (const grip of this.grips.children) put(grip, places["ab".indexOf(grip.dataset.person)]);
+    for (const grip of this.grips.children) lay(grip, places["ab".indexOf(grip.dataset.person)]);
     const long = this.paths.filter(({ points }) => points.length > 1);
     while (this.lengths.children.length > long.length) this.lengths.lastChild.remove();
     while (this.lengths.children.length < long.length) this.lengths.append(node("span"));
@@ -199,7 +198,7 @@ export class Drawing {
       const label = this.lengths.children[i];
       label.className = `pdd-length pdd-length-${person}`;
       label.textContent = `${lengthOf(points).toFixed(1)} m`;
-      put(label, points.at(-1).slice(1, 3), 18);
+      lay(label, points.at(-1).slice(1, 3), 18);
     });
   }
 }

@@ -170,7 +170,7 @@ def test_what_cannot_be_measured_is_a_dash_among_the_others() -> None:
         return Result(duets=(), manifest={}, readouts=({"after": after},))
 
     made = grid_table({"plain": result(None), "damped": result(0.2)})
-    assert "<td>–</td>" in made and "<b>0.20</b>" in made
+    assert '<td class=""><b>–</b></td>' in made and "<b>0.20</b>" in made
     assert "Hands, closest" not in grid_table({"plain": result(None), "damped": result(None)})
 
 

@@ -14,9 +14,11 @@ import pytest
 
 from motion import SKELETONS, Clip, InputError
 from tests.ui.stub_engine import walking
+from tests.ui.tab_events import built
 from webdemo.inference.run import Result
 from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Action, facts, shown
 from webdemo.ui.history import Entry, Found, Opened, Search, Usage
+from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, compared
 from webdemo.ui.tabs.history_files import room_html
 from webdemo.ui.text.words import settings
@@ -143,7 +145,8 @@ def test_an_export_says_what_is_in_it(tmp_path: Path) -> None:
     history = tab(book, tmp_path)
     answer = press(history, "export", "hug")
     assert "2 runs in one file of 1.0 MB." in answer.line and answer.saved["visible"]
-    assert press(history, "search").saved == gr.skip() and not press(history, "favour", "hug").saved["visible"]
+    assert (press(history, "search").saved, press(history, "search").address) == (gr.skip(), gr.skip())
+    assert not press(history, "favour", "hug").saved["visible"]
 
 
 @pytest.mark.parametrize(
@@ -169,13 +172,19 @@ def test_a_history_that_cannot_be_read_is_a_sentence() -> None:
     assert "cannot be read or written" in press(tab(broken), "search", search={"words": "a"}).view["value"]["empty"]
 
 
-def test_chosen_runs_are_compared_in_a_grid() -> None:
+def test_chosen_runs_are_compared_in_a_grid(tmp_path: Path) -> None:
     result = Result(duets=(walking(1.0),), manifest={"model": "stub"})
     runs = [Opened(entry=entry(name), result=replace(result, run="id")) for name in ("hug", "wave", "wave")]
-    shown_ = compared(runs)
-    names = [cell["caption"] for cell in shown_["player"]["value"]["samples"][0]["cells"]]
-    assert names == ["They hug., seed 3", "They wave., seed 3", "They wave., seed 3 #2"]
-    assert shown_["record"].result.run == "", "a link would show one of them alone"
+    names = ["They hug., seed 3", "They wave., seed 3", "They wave., seed 3 #2"]
+    job, book = built(GenerateTab, tmp_path), SimpleNamespace(open=lambda run, _: runs[int(run)])
+    page: Any = SimpleNamespace(history=book)
+    history = HistoryTab(page, {"generate": job}, tabs=gr.Tabs())
+    history.line = gr.HTML()
+    seen = history.compare(SimpleNamespace(_data={"act": "compare", "ids": ["0", "1", "2"]}))
+    cells = seen[job.results.player]["value"]["samples"][0]["cells"]
+    assert [cell["caption"] for cell in cells] == names
+    assert seen[job.record].result.run == "", "a link would show one of them alone"
+    assert seen[job.reading] == gr.update(checked={}), "the verdicts were on another motion"
     with pytest.raises(InputError, match="two to 9 runs"):
         compared(runs[:1])
     fewer = Clip(np.zeros((30, 15, 3)), 30, SKELETONS["sbu15"])

@@ -51,6 +51,7 @@ def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab,
     assert "2.0 to 5.0 s of 12.0 s" in found["line"]
     assert found["player"]["value"]["title"] == "walkers.npz, person B"
     assert found["player"]["value"]["samples"][0]["frames"] == 90
+    assert not found["under"]["visible"] and found["readouts"] == "", "the stage shows no result"
     for start, end, says in (
         (2.0, 2.5, "1 s or more"),
         (0.0, 12.0, "Choose InterFormer or Nearest recorded reaction, or take 10 s or less"),
@@ -77,7 +78,11 @@ def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(tab: ReactTab, 
 @pytest.mark.parametrize("person", ["a", "b"])
 def test_a_person_of_the_last_result_is_taken(tab: ReactTab, walker: Path, person: str) -> None:
     record = run(tab, upload(tab, walker)[-1]["state"])[-1]["record"]
-    reading, last = [taken(tab.actor, updates) for updates in tab.actor.take_result(record)]
+    assert "file" not in upload(tab, walker)[-1], "it is the one that is used"
+    updates = list(tab.actor.take_result(record))
+    assert updates[-1][tab.sampling.laid] == "", "what damping did to the result that has left the stage"
+    reading, last = [taken(tab.actor, each) for each in updates]
+    assert last["file"] is None, "no longer what is used"
     assert (reading["go"]["interactive"], last["go"]["interactive"]) == (False, True), "not before it is read"
     assert last["person"] == gr.update(choices=BOTH, visible=True, value="a")
     again = run(tab, last["state"], person=person)[-1]["record"].result.duets[0]

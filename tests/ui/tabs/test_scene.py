@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from motion import InputError
-from tests.ui.tab_events import built
+from tests.ui.tab_events import built, changes
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, sentences
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.scene_parts import part_request
@@ -28,10 +28,7 @@ def tab(tmp_path: Path) -> SceneTab:
 
 def shown(tab: SceneTab, updates: Any) -> list[dict[str, Any]]:
     """What each update changes, by the output's name."""
-    return [
-        {name: value for name, value in zip(tab.outputs, update, strict=True) if value != gr.skip()}
-        for update in updates
-    ]
+    return [changes(tab.outputs, update) for update in updates]
 
 
 def generate(tab: SceneTab, prompt: str = "They meet. Then they hug.", story: Any = None) -> list[dict[str, Any]]:
@@ -50,6 +47,16 @@ def test_a_sentence_is_laid_out_and_made_beat_by_beat(tab: SceneTab) -> None:
     assert {tuple(sample["roles"]) for sample in seen} == {("a", "b")}, "nobody is an actor in a scene"
     record = updates[-1]["record"]
     assert (record.prompt, record.result.manifest["request"]["seed"]) == ("They meet. They hug.", 3)
+
+
+def test_of_a_cancelled_story_a_part_stays_without_what_is_said_of_a_result(tab: SceneTab) -> None:
+    last: dict[str, Any] = {}
+    for update in tab.run("session", {"prompt": "They meet. Then they hug.", "story": None, **SETTINGS}):
+        last = changes(tab.outputs, update)
+        if "value" in last.get("player", {}):
+            tab._cancelled["session"] = True
+    assert "Cancelled" in last["line"] and last["player"]["value"]["samples"] and "record" not in last
+    assert not (last["under"]["visible"] or last["spans"]["visible"] or last["readouts"])
 
 
 def test_of_the_words_and_the_beats_what_was_changed_last_is_made_and_shown(tab: SceneTab) -> None:
@@ -143,20 +150,8 @@ def test_an_edit_gives_lengths_and_what_is_wrong(tab: SceneTab) -> None:
 
 
 def part(tab: SceneTab, which: str, record: Record | None, story: Any, words: str = "") -> dict[str, Any]:
-    fields = {
-        "part": which,
-        "story": story,
-        "words": words,
-        "guidance": 4.3,
-        "steps": 2,
-        "damping": 0.7,
-        "strictness": 0.5,
-        "record": record,
-        "frame": 60,
-        "sample": 0,
-        "seed": 0,
-    }
-    return shown(tab, tab.run("session", fields))[-1]
+    fields = {"part": which, "story": story, "words": words, "record": record, "frame": 60, "sample": 0}
+    return shown(tab, tab.run("session", {**SETTINGS, "strictness": 0.5, **fields}))[-1]
 
 
 def test_a_span_is_made_again(tab: SceneTab) -> None:
@@ -180,6 +175,7 @@ def test_futures_begin_at_the_playhead_and_one_is_taken(tab: SceneTab) -> None:
     taken = tab.take_shown(last["record"], ["run"], '{"sample": 2}')
     assert taken[tab.record].result.duets == found.duets[2:] and "number 3" in taken[tab.line]
     assert taken[tab.trail] == ["run", found.run], "Undo opens the choice again"
+    assert taken[tab.results.readouts] != last["readouts"] and not taken[tab.results.address]["visible"]
 
 
 def test_parts_need_a_motion_and_a_span(tab: SceneTab) -> None:
@@ -192,17 +188,7 @@ def test_parts_need_a_motion_and_a_span(tab: SceneTab) -> None:
 
 def test_a_kept_run_opens_with_its_story(tab: SceneTab) -> None:
     result = generate(tab)[-1]["record"].result
-    entry = Entry(
-        id="x",
-        kind="scene",
-        title="t",
-        created=0.0,
-        state="done",
-        message="",
-        favourite=False,
-        links=(),
-        request=result.manifest["request"],
-    )
+    entry = Entry(id="x", kind="scene", title="t", state="done", request=result.manifest["request"])
     found = tab.opened(Opened(entry=entry, result=result))
     assert [b["words"] for b in found[tab.line_up]["value"]["beats"]] == ["They meet.", "They hug."]
     assert found[tab.prompt]["value"] == "They meet. They hug."
@@ -220,17 +206,7 @@ def test_a_kept_part_opens_with_the_whole_story(tab: SceneTab) -> None:
     kept = Kept(controls=tab.kept_more({"part": "span", "story": laid}))
     for which, words in (("span", ["They meet.", "They hug."]), ("futures", ["They meet.", "…"])):
         result = part(tab, which, record, laid)["record"].result
-        entry = Entry(
-            id="x",
-            kind="scene",
-            title="t",
-            created=0.0,
-            state="done",
-            message="",
-            favourite=False,
-            links=(),
-            request=result.manifest["request"],
-        )
+        entry = Entry(id="x", kind="scene", title="t", state="done", request=result.manifest["request"])
         found = tab.opened(Opened(entry=entry, result=result, kept=kept))
         story = found[tab.line_up]["value"]
         assert [beat["words"] or "…" for beat in story["beats"]] == words

@@ -113,7 +113,7 @@ def test_a_line_says_what_the_settings_did() -> None:
 @pytest.mark.parametrize(
     ("before", "after", "said"),
     [
-        (4.191, 4.186, "<td><b>4.19</b></td>"),
+        (4.191, 4.186, '<td class=""><b>4.19</b></td>'),
         (1.0, 0.5, 'pd-better">1.00 → <b>0.50<'),
         (1.0, 1.5, 'pd-worse">1.00 → <b>1.50<'),
         (0.0, 0.5, 'pd-worse">0.00 → <b>0.50<'),

@@ -6,11 +6,8 @@ neither prompts' settings nor methods leave the server.
 
 from __future__ import annotations
 
-import html
-import re
 from urllib.parse import quote
 
-import gradio as gr
 from fastapi import APIRouter, Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
 
@@ -18,10 +15,9 @@ from webdemo.server.settings import Settings
 from webdemo.server.store.history import History
 from webdemo.server.store.studies import Studies
 from webdemo.study import Pair
-from webdemo.ui.components.player import PLAYER_FOLDER
 from webdemo.ui.components.prediction_view import payload_of
 from webdemo.ui.history import Entry
-from webdemo.ui.public_html import FILES, Place, embed_html, player_html
+from webdemo.ui.public_html import FILES, Place, embed_html, player_html, study_html
 from webdemo.ui.visitor import visitor_of
 from webdemo.view.payload import Payload, build_payload, grid_sample, sample_payload
 
@@ -30,12 +26,8 @@ from .routes import NOTHING, Refused
 
 _FILE_HEADERS = {"Cache-Control": "public, max-age=600", "Access-Control-Allow-Origin": "*"}
 """A frame with a sandbox has no origin of its own, and the files are the same for everybody."""
-
-STUDY_FOLDER = PLAYER_FOLDER.parent / "study"
 _NO_COOKIE = "Allow this page to keep a cookie, so that each of your votes counts once: then reload it."
 _BY_SCRIPT = "Votes are cast on the study's own page: open its link in a browser."
-
-gr.set_static_paths([STUDY_FOLDER])
 
 
 def public_routes(settings: Settings, history: History) -> APIRouter:
@@ -79,7 +71,8 @@ def study_routes(settings: Settings, studies: Studies) -> APIRouter:
 
     @router.get("/study/{key}")
     def page(key: str) -> Response:
-        return never_kept(_page(root, key, studies.question(key)))
+        here = f"{root}/study/{quote(key, safe='')}"
+        return never_kept(study_html(studies.question(key), here, Place(files=f"{root}/shown/")))
 
     @router.post("/study/{key}/next")
     def following(key: str, request: Request) -> Response:
@@ -119,15 +112,3 @@ def pair_payload(pair: Pair) -> Payload:
     ]
     sample = grid_sample(cells, ["1", "2"], [""])
     return build_payload([sample], skeleton=pair.first.skeleton, title=pair.caption)
-
-
-def _page(root: str, key: str, question: str) -> str:
-    """The page's HTML; what the owner wrote in it is text."""
-    template = (STUDY_FOLDER / "study.html").read_text(encoding="utf-8")
-    parts = {
-        "markup": (PLAYER_FOLDER / "player.html").read_text(encoding="utf-8"),
-        "files": f"{root}/gradio_api/file={quote(STUDY_FOLDER.as_posix())}",
-        "here": f"{root}/study/{quote(key, safe='')}",
-        "question": html.escape(question),
-    }
-    return re.sub(r"@(\w+)@", lambda match: parts[match[1]], template)

@@ -13,9 +13,7 @@ from motion.video import person_of, unpack_film
 
 from .accepts import Text
 from .actors import Source
-from .part import STATIC, Part
-
-CAMERA_FOLDER = STATIC / "camera"
+from .part import Part
 
 
 class CameraPanel(Part):
@@ -26,7 +24,7 @@ class CameraPanel(Part):
     """
 
     accepts = TypeAdapter(Text | None)
-    template = CAMERA_FOLDER / "camera.html"
+    folder = "camera"
     module = "camera.js"
 
 

@@ -72,10 +72,7 @@ def prompt_field(label: str, placeholder: str, elem_id: str, **more: Any) -> gr.
 
 def method_list(choices: Sequence[tuple[str, str]], value: str, elem_id: str) -> gr.Dropdown:
     """The list of a tab's methods, (label, name) each."""
-    with gr.Row(elem_classes="pd-rows"):
-        return gr.Dropdown(
-            choices, value=value, label=say("react.method"), elem_id=elem_id, min_width=0, filterable=False
-        )
+    return gr.Dropdown(choices, value=value, label=say("react.method"), elem_id=elem_id, min_width=0, filterable=False)
 
 
 def address_field(key: str, elem_id: str, **more: Any) -> gr.Textbox:

@@ -12,9 +12,8 @@ from acts.captions import short
 from webdemo.ui.history import HistoryLike, Search
 from webdemo.ui.visitor import visitor
 
-from .part import STATIC, Part, scoped
+from .part import Part
 
-FINDER_FOLDER = STATIC / "finder"
 _RUNS = 200
 """The newest runs, which are searched by their titles; *History* searches all of them."""
 
@@ -26,8 +25,8 @@ class Finder(Part):
         elem_id: id of the element in the page.
     """
 
-    template = FINDER_FOLDER / "finder.html"
-    style = scoped(FINDER_FOLDER / "finder.css")
+    folder = "finder"
+    styled = True
     declared: ClassVar = {"known": None}
 
     def wire(self, history: HistoryLike, **quiet: Any) -> None:

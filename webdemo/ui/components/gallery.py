@@ -9,9 +9,7 @@ from typing import Any
 
 import gradio as gr
 
-from .part import STATIC, Part, scoped
-
-GALLERY_FOLDER = STATIC / "gallery"
+from .part import Part
 
 _TAKEN = "(scene) => [scene.prompt, scene.seconds, scene.seed]"
 
@@ -23,8 +21,8 @@ class Gallery(Part):
         elem_id: id of the element in the page.
     """
 
-    template = GALLERY_FOLDER / "gallery.html"
-    style = scoped(GALLERY_FOLDER / "gallery.css")
+    folder = "gallery"
+    styled = True
 
     def fill(self, prompt: gr.Textbox, seconds: gr.Slider, seed: gr.Number, run: gr.Button, **quiet: Any) -> None:
         """Puts the scene that is pressed into the controls and presses the button that makes it.

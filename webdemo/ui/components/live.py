@@ -13,9 +13,7 @@ from motion import FPS, SMPL22, Clip, InputError
 from webdemo.inference.requests.live import LONGEST, LiveTake
 
 from .accepts import Text
-from .part import STATIC, Part
-
-LIVE_FOLDER = STATIC / "live"
+from .part import Part
 
 FARTHEST = 100.0
 """Metres from the origin: nobody in front of a camera walks further."""
@@ -32,7 +30,7 @@ class LivePanel(Part):
     """
 
     accepts = TypeAdapter(Text | None)
-    template = LIVE_FOLDER / "live.html"
+    folder = "live"
     module = "live.js"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import asdict
-from typing import Any
+from typing import Annotated, Any, TypeAlias
 
 from pydantic import Field, TypeAdapter, ValidationError
 
@@ -15,9 +15,8 @@ from webdemo.ui.history import Entry, Found, Search
 from webdemo.ui.text.words import counted, method_label, settings
 
 from .accepts import Finite, Flag, Sent, Text
-from .part import STATIC, Part
+from .part import Part
 
-NOTEBOOK_FOLDER = STATIC / "notebook"
 STEP = 60
 """Runs that are shown at first, and how many more at a time."""
 MOST_SHOWN = 500
@@ -25,13 +24,16 @@ UNKNOWN = "The notebook sent something unknown: reload the page."
 _MARKS = {"running": "… running", "failed": "✕ failed", "cancelled": "✕ cancelled", "interrupted": "✕ interrupted"}
 
 
+Word: TypeAlias = Annotated[str, Field(strict=True, max_length=200)]
+
+
 class SentSearch(Sent):
     """A search as the browser sends it."""
 
-    words: Text = ""
-    kind: Text = ""
-    model: Text = ""
-    tag: Text = ""
+    words: Word = ""
+    kind: Word = ""
+    model: Word = ""
+    tag: Word = ""
     starred: Flag = False
 
 
@@ -71,13 +73,10 @@ class Action(Sent):
 
     @property
     def wanted(self) -> Search:
-        """The search, of texts that are not too long."""
-        asked = (self.search or SentSearch()).model_dump()
-        words: dict[str, Any] = {
-            name: value[:200] if isinstance(value, str) else value for name, value in asked.items()
-        }
+        """The search."""
         most = int(self.limit or 0)
-        return Search(**words, limit=most if STEP <= most <= MOST_SHOWN else STEP)
+        asked = (self.search or SentSearch()).model_dump()
+        return Search(**asked, limit=most if STEP <= most <= MOST_SHOWN else STEP)
 
 
 class NotebookView(Part):
@@ -90,7 +89,7 @@ class NotebookView(Part):
     """
 
     accepts_event = TypeAdapter(Action)
-    template = NOTEBOOK_FOLDER / "notebook.html"
+    folder = "notebook"
     module = "notebook.js"
 
 

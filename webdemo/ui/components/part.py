@@ -27,8 +27,8 @@ Promise.resolve(loaded).then((part) => part.mount(element, props, watch, trigger
 class Part(gr.HTML):
     """A part of the page; what it sends and shows goes through Gradio unchanged.
 
-    A subclass declares what differs. ``accepts`` and ``accepts_event`` say what a browser may send, see
-    :mod:`webdemo.ui.components.accepts`.
+    A subclass declares what differs; its ``template`` is the HTML file that is called like its folder. ``accepts`` and
+    ``accepts_event`` say what a browser may send, see :mod:`webdemo.ui.components.accepts`.
 
     Args:
         value: shown at first.
@@ -36,16 +36,22 @@ class Part(gr.HTML):
         kwargs: props and options that replace the declared ones.
     """
 
+    folder: ClassVar[str]
+    """The folder of ``static`` with its files, all of which become reachable over the network."""
     template: ClassVar[Path]
-    """The HTML file; everything in its folder becomes reachable over the network."""
     module: ClassVar[str] = "main.js"
     """The script in that folder whose ``mount`` gets the element, its props, ``watch`` and ``trigger``."""
+    styled: ClassVar[bool] = False
+    """Whether the page gets the folder's style sheet with the part; otherwise the script loads what it needs."""
     style: ClassVar[str] = ""
-    """CSS that the page gets with the part, or none where the script loads it."""
+    """CSS that the page gets with the part."""
     declared: ClassVar[dict[str, Any]] = {}
     """Props beside the value, as they are at first."""
 
     def __init_subclass__(cls) -> None:
+        cls.template = STATIC / cls.folder / f"{cls.folder}.html"
+        if cls.styled:
+            cls.style = scoped(cls.template.with_suffix(".css"))
         gr.set_static_paths([cls.template.parent])
 
     def __init__(self, value: Any = None, *, elem_id: str | None = None, **kwargs: Any) -> None:

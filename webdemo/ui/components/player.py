@@ -49,7 +49,7 @@ class MotionPlayer(Part):
         elem_id: id of the element in the page.
     """
 
-    template = PLAYER_FOLDER / "player.html"
+    folder = "player"
     style = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
     declared: ClassVar = {"busy": "", "progress": None}
 

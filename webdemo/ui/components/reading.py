@@ -23,10 +23,7 @@ from webdemo.inference.story.sentences import beats_of
 from webdemo.ui.text.words import error_line
 
 from .accepts import Finite, Sent, SentPaths, Text
-from .part import STATIC, Part, scoped
-
-READING_FOLDER = STATIC / "reading"
-
+from .part import Part
 
 READERS = 2
 """Texts that are read at once; further ones wait in the fair queue of events, those of programs as well."""
@@ -76,8 +73,8 @@ class Reading(Part):
     """
 
     accepts = TypeAdapter(SentReading | None)
-    template = READING_FOLDER / "reading.html"
-    style = scoped(READING_FOLDER / "reading.css")
+    folder = "reading"
+    styled = True
     declared: ClassVar = {"text": "", "shown": None, "checked": {}, "editable": False, "usual": 0}
 
     def read_first(self, prompt: gr.Textbox, seconds: gr.Slider, inputs: Iterable[gr.Component]) -> str:

@@ -20,9 +20,7 @@ from webdemo.inference.story.beats import MOST_BEATS
 from webdemo.inference.story.request import beat_of, pose_of
 
 from .accepts import Finite, Flag, Sent, SentPaths, Text
-from .part import STATIC, Part, scoped
-
-STORY_FOLDER = STATIC / "story"
+from .part import Part
 
 
 class SentBeat(Sent):
@@ -68,9 +66,9 @@ class StoryLine(Part):
     """
 
     accepts = TypeAdapter(SentStory | None)
-    template = STORY_FOLDER / "story.html"
+    folder = "story"
     module = "editor.js"
-    style = scoped(STORY_FOLDER / "story.css")
+    styled = True
     declared: ClassVar = {"lengths": None, "laid": None}
 
 

@@ -11,8 +11,7 @@ from typing import Any
 from motion import InputError
 from motion.metrics import MEASURES
 from webdemo.inference.run import Result
-from webdemo.ui.text.panels import sides, table
-from webdemo.ui.text.words import number, text
+from webdemo.ui.text.panels import measures_table, sides
 from webdemo.view.payload import Payload, build_payload, grid_sample
 
 from .prediction_view import payload_of
@@ -147,44 +146,20 @@ def grid_payload(grid: Grid, results: Sequence[Result], *, title: str = "") -> P
     return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=title)
 
 
-def read_outs(results: Mapping[str, Result]) -> dict[str, Mapping[str, float]]:
-    """Cell → measure → value, of the first sample after damping and clean-up; without what could not be measured."""
-    return {name: sides(result.readouts[0] if result.readouts else {})[1] for name, result in results.items()}
-
-
 def grid_table(results: Mapping[str, Result]) -> str:
-    """A row a cell and a column a measure; the best and the worst of each measure of quality are marked."""
-    values = read_outs(results)
-    measures = [m for m in MEASURES if any(m.key in cell for cell in values.values())]
+    """A column a cell, of its first sample after damping and clean-up, and a row a measure; "" where there is none."""
+    cells = {name: (None, sides(each.readouts[0] if each.readouts else {})[1]) for name, each in results.items()}
+    measures = [m for m in MEASURES if any(m.key in after for _, after in cells.values())]
     if not measures:
         return ""
-    done = {name: _acts_done(result) for name, result in results.items()}
-    heads = ["Acts done"] * any(done.values()) + [
-        f'<th scope="col" title="{text(m.meaning)}">{text(m.label)} <small>{text(m.unit)}</small></th>'
-        for m in measures
-    ]
-    rows = ""
-    for name, cell in values.items():
-        marked = "".join(_cell(m.key, m.digits, cell, list(values.values()), bool(m.better)) for m in measures)
-        acts = f"<td><b>{done[name] or '–'}</b></td>" * any(done.values())
-        rows += f'<tr><th scope="row">{text(name)}</th>{acts}{marked}</tr>'
-    caption = "Best in green, worst in red"
-    return f'<div class="pd-readouts">{table(caption, heads, rows, "pd-grid-table")}</div>'
+    done = [_acts_done(result) for result in results.values()]
+    acts = "".join(f"<td><b>{each or '–'}</b></td>" for each in done)
+    first = f'<tr><th scope="row">Acts done</th>{acts}</tr>' if any(done) else ""
+    shown = measures_table("Best in green, worst in red", measures, cells, first)
+    return f'<div class="pd-readouts">{shown}</div>'
 
 
 def _acts_done(result: Result) -> str:
     """How many acts of the sentence the first sample shows, of those that are measured: "2 of 3"; "" for none."""
     judged = [row["done"] for row in result.manifest.get("checked") or () if row["done"] is not None]
     return f"{sum(judged)} of {len(judged)}" if judged else ""
-
-
-def _cell(
-    key: str, digits: int, mine: Mapping[str, float], everybody: Sequence[Mapping[str, float]], ranked: bool
-) -> str:
-    if key not in mine:
-        return "<td>–</td>"
-    rounded = [round(cell[key], digits) for cell in everybody if key in cell]
-    value, mark = round(mine[key], digits), ""
-    if ranked and len(set(rounded)) > 1:
-        mark = "pd-better" if value == min(rounded) else "pd-worse" if value == max(rounded) else ""
-    return f'<td class="{mark}"><b>{number(value, digits)}</b></td>'

@@ -67,16 +67,16 @@ class ActorPanel(SourcePanel):
             self.found = gr.HTML(elem_id="react-found")
         self.known = [self.up, self.fps, self.order]
 
-    def wire(self, record: gr.State, line: gr.HTML, go: gr.Button) -> None:
+    def wire(self, tab: Any) -> None:
         """Also what shows the chosen person and part."""
-        super().wire(record, line, go)
+        super().wire(tab)
         self.file.upload(lambda: (AUTO, None, AUTO), outputs=list(self.known), queue=False, **QUIET)
         self.state.change(self.settings_of, inputs=self.state, outputs=self.reading, queue=False, **QUIET)
         gr.on(
             [self.person.input, self.begin.release, self.end.release],
             self.preview,
             inputs=[self.state, self.person, self.begin, self.end],
-            outputs=[line, self.results.player],
+            outputs=[self.line, self.results.player, *self.bare],
             trigger_mode="always_last",
             **QUIET,
         )
@@ -85,7 +85,7 @@ class ActorPanel(SourcePanel):
 
     def settings_of(self, source: Source | None) -> dict[str, Any]:
         """Shows how a file was read where it is somebody's own, opened where something had to be assumed."""
-        own = source is not None and source.path is not None and source.path not in dict(self.examples).values()
+        own = self.own(source)
         return gr.update(visible=own, open=own and source is not None and source.asks)
 
     def payload(self, source: Source) -> dict[str, Any]:
@@ -121,7 +121,7 @@ class ActorPanel(SourcePanel):
         if source is None:
             return {self.line: gr.skip()}
         player = show(source.preview(person, start, end))
-        return {self.line: self._part_line(source, start, end), self.results.player: player}
+        return {self.line: self._part_line(source, start, end), self.results.player: player, **self.bare}
 
     @staticmethod
     def _part_line(source: Source, start: float, end: float) -> str:

@@ -124,12 +124,8 @@ class Grids:
             made[name] = yield from tab.made(session, request, label=f"{i + 1} of {len(wanted)}, {name}. ")
         title = f"{tab.title(wanted[0])} · grid of {len(wanted)}"
         spent = seconds(sum(map(total, made.values())))
-        yield {
-            **grid_shown(grid, made, title) | tab.laid_out(made.values()) | tab.beside_grid(made, asked),
-            "line": status(f"{len(wanted)} results done in {spent}.", tone="done") + notes_lines(made),
-            "under": gr.update(visible=True),
-            **tab.results.fresh(),
-        }
+        line = status(f"{len(wanted)} results done in {spent}.", tone="done") + notes_lines(made)
+        yield self.shown(grid, made, title, asked) | {"line": line}
 
     def opened(self, run: Opened) -> dict[str, Any]:
         """Updates that show a kept grid with the cells that are still there; none for a run that is no grid."""
@@ -141,18 +137,22 @@ class Grids:
         names = about["names"] if whole_grid else [str(i + 1) for i in range(len(results))]
         columns, rows = (about["columns"], about["rows"]) if whole_grid else ([""] * len(results), [""])
         made = dict(zip(names, results, strict=True))
-        shown = grid_shown(Grid(columns, rows, [], names), made, str(about["title"]))
-        return shown | self.tab.laid_out(results) | self.tab.beside_grid(made, {})
+        return self.shown(Grid(columns, rows, [], names), made, str(about["title"]))
 
-
-def grid_shown(grid: Grid, made: Mapping[str, Result], title: str) -> dict[str, Any]:
-    """Updates that show a grid."""
-    results = list(made.values())
-    about = {"columns": grid.columns, "rows": grid.rows, "names": list(made), "title": title}
-    record = Record(results[0], title, compared=dict(made), grid=about)
-    return {
-        "player": show(grid_payload(grid, results, title=title)),
-        "readouts": grid_table(made),
-        "record": record,
-        "own": record,
-    }
+    def shown(
+        self, grid: Grid, made: Mapping[str, Result], title: str, fields: Mapping[str, Any] | None = None
+    ) -> dict[str, Any]:
+        """Updates that show a grid of results, which were made from ``fields`` or are of the history."""
+        results = list(made.values())
+        about = {"columns": grid.columns, "rows": grid.rows, "names": list(made), "title": title}
+        record = Record(results[0], title, compared=dict(made), grid=about)
+        return {
+            "player": show(grid_payload(grid, results, title=title)),
+            "readouts": grid_table(made),
+            "record": record,
+            "own": record,
+            "under": gr.update(visible=True),
+            **self.tab.results.fresh(),
+            **self.tab.laid_out(results),
+            **self.tab.beside_grid(made, fields or {}),
+        }

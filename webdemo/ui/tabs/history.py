@@ -20,7 +20,6 @@ from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import counted, error_line, link_line, text
 from webdemo.ui.visitor import Visitor, visitor
 
-from .grids import grid_shown
 from .history_files import FilesPanel, room_html
 from .job import JobTab
 from .results import QUIET, Parts, Updates, said
@@ -36,7 +35,7 @@ _NAMED = f"""() => new URLSearchParams(window.location.search).get('run')
     || (sessionStorage.getItem('pas-de-deux-made') ? '{_LAST}' : '')"""
 """The run that the page's address names, or the last one where this browser tab has made any."""
 _HIDDEN = '() => Array(2).fill({ __type__: "update", visible: false })'
-"""JavaScript that hides what two earlier actions left."""
+"""JavaScript that hides the link and the file that an earlier action left."""
 
 
 class HistoryTab:
@@ -82,7 +81,9 @@ class HistoryTab:
         shown = [self.view, self.who, self.line, self.address, self.saved, self.removed]
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
-        gr.on([self.view.edit, self.view.apply], None, outputs=[self.address, self.saved], js=_HIDDEN, **QUIET)
+        others = [self.files.everything.click, self.files.files.upload]
+        others += [self.view.edit, self.view.apply, self.view.submit, self.view.like]
+        gr.on(others, None, outputs=[self.address, self.saved], js=_HIDDEN, **QUIET)
         self.files.wire(shown[:2], self.line, self.saved, self.removed)
         self.study.wire(tab, self.view.edit)
         self.sharing.wire(tab, self.view.apply)
@@ -129,7 +130,7 @@ class HistoryTab:
                 count, removed = self.history.restore(removed, owner), []
                 line = status(f"Brought {counted(count, 'run')} back.", tone="done")
             elif action.act == "search":
-                saved = gr.skip()
+                address = saved = gr.skip()
             else:
                 line = status(self._one(action, owner), tone="done")
         except Exception as error:
@@ -164,12 +165,12 @@ class HistoryTab:
         job = self.jobs.get(runs[0].entry.kind) if runs else None
         if job is None:
             raise InputError("Choose two to nine runs first.")
-        shown = compared(runs) | job.results.fresh() | job.laid_out(run.result for run in runs)
+        made = compared(runs)
+        shown = job.grids.shown(loose([{}] * len(made), list(made)), made, f"{len(made)} runs compared")
         return {
             self.tabs: gr.update(selected=runs[0].entry.kind),
             self.line: status(),
             job.line: status(f"{len(runs)} runs of the history side by side.", tone="done"),
-            job.results.under: gr.update(visible=True),
             **{job.outputs[name]: update for name, update in shown.items()},
         }
 
@@ -195,8 +196,8 @@ class HistoryTab:
         return {self.tabs: gr.update(selected=entry.kind), self.line: status(), **job.opened(opened)}
 
 
-def compared(runs: Sequence[Opened]) -> dict[str, Any]:
-    """Updates that show runs as a grid.
+def compared(runs: Sequence[Opened]) -> dict[str, Result]:
+    """Runs by the names that they have beside each other.
 
     Raises:
         InputError: if their joints differ, or for fewer than two or more than nine runs.
@@ -213,7 +214,7 @@ def compared(runs: Sequence[Opened]) -> dict[str, Any]:
         name = name if seed is None else f"{name}, seed {seed}"
         number = sum(each.split(" #")[0] == name for each in made)
         made[f"{name} #{number + 1}" if number else name] = replace(run.result, run="")
-    return grid_shown(loose([{}] * len(made), list(made)), made, f"{len(made)} runs compared")
+    return made
 
 
 def _signed_in(who: Visitor) -> str:

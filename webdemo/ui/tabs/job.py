@@ -244,7 +244,8 @@ class JobTab(ABC):
         for changed in self._steps(session, fields):
             player = changed.get("player", gr.skip())
             motion = {"value": player["value"]} if "value" in player else motion
-            yield self.updates(**{**changed, **lasting, "player": motion | player})
+            left = self.bare() if motion and "stopped" in changed else {}  # of a motion that is no result
+            yield self.updates(**{**changed, **lasting, **left, "player": motion | player})
 
     def _steps(self, session: str, fields: Mapping[str, Any]) -> Iterator[Named]:
         """The updates of a run, each with what it changes."""
@@ -311,7 +312,7 @@ class JobTab(ABC):
         raise Cancelled(cancelled_line(last))
 
     def _stopped(self, line: str, tone: str) -> Named:
-        return {"player": busy(""), "line": status(line, tone=tone)}
+        return {"player": busy(""), "line": status(line, tone=tone), "stopped": True}
 
     def rest(self, record: Record | None, trail: list[str]) -> Updates:
         """The buttons once a run is over, however it ended, and the runs of this tab that can be gone back to."""
@@ -361,6 +362,12 @@ class JobTab(ABC):
             **self.results.fresh(),
             **self.laid_out([result]),
         }
+
+    def bare(self) -> Named:
+        """Updates that take away what is said of a result, and can be done with it, once another motion is shown."""
+        hidden = gr.update(visible=False)
+        gone = {"under": hidden, "readouts": "", "laid": "", "spans": hidden, "reading": gr.update(checked={})}
+        return {name: update for name, update in gone.items() if name in self.outputs}
 
     def laid_out(self, results: Iterable[Result]) -> dict[str, str]:
         """The update of the line on what the settings did, where the tab has it."""

@@ -76,10 +76,6 @@ class PastPanel(SourcePanel):
     take_at_end = True
     marker: gr.Slider
 
-    def build_marker(self) -> None:
-        """The slider of the marker."""
-        self.marker = slider("predict.marker", (0, 10), PAST_SECONDS, 0.1, kind=FittedSlider, elem_id="predict-marker")
-
     def more(self) -> list[gr.components.Component]:
         """The marker."""
         return [self.marker]
@@ -162,7 +158,7 @@ class PredictTab(JobTab):
             "samples": self.samples,
         }
         self.wire([self.go.click], record)
-        self.past.wire(self.record, self.line, self.go)
+        self.past.wire(self)
         self.model.input(
             None,
             inputs=self.model,
@@ -177,7 +173,8 @@ class PredictTab(JobTab):
         self.build_go(say("predict.go"))
 
     def _settings(self) -> None:
-        self.past.build_marker()
+        marker: dict[str, Any] = {"kind": FittedSlider, "elem_id": "predict-marker"}
+        self.past.marker = slider("predict.marker", (0, 10), PAST_SECONDS, 0.1, **marker)
         bounds = method(PredictRequest.model).seconds
         self.seconds = slider("predict.seconds", bounds, PredictRequest.seconds, 0.5, elem_id="predict-seconds")
         self.model = method_list(predict_choices(), PredictRequest.model, "predict-method")
@@ -205,7 +202,6 @@ class PredictTab(JobTab):
         self.past.wire_arrival(tab, self.record, self.label)
         for stage in stages:
             taken = stage.onward.click(self.past.take_result, inputs=stage.own, **load)
-            taken.then(None, outputs=self.past.file, js="() => null", **QUIET)
             # Only now is the tab opened, which finds the result on it.
             chosen = taken.then(lambda: gr.update(selected=self.label.lower()), outputs=tabs, queue=False, **QUIET)
             chosen.then(None, js=PRESS % json.dumps(self.go.elem_id), **QUIET)

@@ -92,7 +92,7 @@ class ReactTab(JobTab):
         }
         self.wire([self.go.click, self.prompt.submit], record)
         self.wire_start(self.keep_live, [self.live.submit], more=[self.live])
-        self.actor.wire(self.record, self.line, self.go)
+        self.actor.wire(self)
         self.stream.click(None, inputs=self.method, js=_STREAM, **QUIET)
         # In the browser: a late answer of the server would undo what was set meanwhile.
         fits = {key: self.fit_method(key) for _, key in react_choices()}
@@ -109,7 +109,14 @@ class ReactTab(JobTab):
         self.prompt = prompt_field(_WORDS, "One person waves and the other waves back.", "react-prompt")
         self.build_go(say("react.go"), self._stream)
         with gr.Accordion(say("react.advanced"), open=False, elem_id="react-advanced", elem_classes="pd-advanced"):
-            self._advanced()
+            self.method = method_list(react_choices(), AUTOMATIC, "react-method")
+            self.about = gr.HTML(method_line(_AUTOMATIC), elem_id="react-about")
+            self.role = gr.Radio(
+                [(say("react.acts_first"), "a"), (say("react.reacts"), "b")],
+                value=ReactRequest.role,
+                label=say("react.role"),
+                elem_id="react-role",
+            )
 
     def _live(self) -> None:
         self.live = LivePanel(elem_id="react-live")
@@ -117,17 +124,6 @@ class ReactTab(JobTab):
     def _stream(self) -> None:
         """The button by which a method answers the person on the stage pose by pose, where it can."""
         self.stream = gr.Button(say("react.stream"), elem_id="react-stream", scale=0, min_width=96)
-
-    def _advanced(self) -> None:
-        """The method, and what the given person does in the reaction."""
-        self.method = method_list(react_choices(), AUTOMATIC, "react-method")
-        self.about = gr.HTML(method_line(_AUTOMATIC), elem_id="react-about")
-        self.role = gr.Radio(
-            [(say("react.acts_first"), "a"), (say("react.reacts"), "b")],
-            value=ReactRequest.role,
-            label=say("react.role"),
-            elem_id="react-role",
-        )
 
     def restored(self) -> Sequence[Any]:
         """The file, how it was read, the pace, the line on the method and whether it can stream."""

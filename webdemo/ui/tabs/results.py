@@ -28,7 +28,7 @@ from webdemo.ui.components.fields import address_field
 from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
-from webdemo.ui.text.panels import status
+from webdemo.ui.text.panels import method_line, status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, link_line
 from webdemo.ui.visitor import visitor
@@ -147,7 +147,7 @@ class Results:
         name = self._id("downloads")
         with gr.Accordion(say("result.export"), open=False, elem_id=name, elem_classes="pd-menu") as self.menu:
             for purpose, keys in PURPOSES.items():
-                gr.HTML(f'<p class="pd-purpose">{purpose}</p>', padding=False)
+                gr.HTML(method_line(purpose), padding=False)
                 with gr.Row(elem_classes="pd-downloads"):
                     for key in keys:
                         named = say(f"files.{key}"), key.replace(".", "-")

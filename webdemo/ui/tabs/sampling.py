@@ -46,7 +46,7 @@ class Sampling:
             show_label=False,
             container=False,
             elem_id=f"{self.prefix}pace",
-            elem_classes="pd-way pd-pace",
+            elem_classes="pd-way",
         )
         usual = SamplingRequest
         self.guidance = self._slider("sampling.guidance", GUIDANCE, usual.guidance, 0.1)

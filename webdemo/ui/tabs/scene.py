@@ -66,9 +66,10 @@ class SceneTab(JobTab):
 
     def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
         """The story of the first cell, without its motion: the cells differ in it."""
-        request = SceneRequest.from_dict(next(iter(made.values())).manifest["request"])
+        asked = next(iter(made.values())).manifest.get("request", {})
+        whole = asked.get("beats") and "motion" not in asked
         return {
-            "story": gr.update(value=value_of(request)),
+            "story": gr.update(value=value_of(SceneRequest.from_dict(asked))) if whole else gr.skip(),
             "prompt": _changed(fields),
             "reading": gr.update(checked={}),
             "spans": gr.update(visible=False),
@@ -214,11 +215,7 @@ class SceneTab(JobTab):
         """Shows the session's last result here, of whichever tab, so that parts of it can be made again."""
         shown_duet(record, 0)
         assert record is not None
-        shown = self.shown(record.result, record.prompt)
-        shown["line"] = status("Select a span of it, or ask for continuations.")
-        return {
-            self.outputs[name]: shown[name] for name in ("player", "line", "under", "readouts", "own", "spans", "take")
-        }
+        return self._taken(record.result, record.prompt, status("Select a span of it, or ask for continuations."))
 
     @said
     def take_shown(self, record: Record | None, trail: list[str], shown: str) -> Parts:
@@ -226,12 +223,14 @@ class SceneTab(JobTab):
         sample = place_of(shown)["sample"]
         shown_duet(record, sample)
         assert record is not None
-        if len(record.result.duets) == 1:
-            return {self.line: status("This is the motion already.")}
-        kept = self.shown(only_sample(record.result, sample), record.prompt)
-        kept["line"] = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
-        updates = {self.outputs[name]: kept[name] for name in ("player", "line", "record", "own", "take")}
-        return updates | {self.trail: [*trail, record.result.run]}
+        line = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
+        taken = self._taken(only_sample(record.result, sample), record.prompt, line)
+        return taken | {self.trail: [*trail, record.result.run]}
+
+    def _taken(self, result: Result, title: str, line: str) -> Parts:
+        """A result as the motion of this tab, without verdicts, which were on what another was asked for."""
+        shown = self.shown(result, title) | {"line": line, "reading": gr.update(checked={})}
+        return {self.outputs[name]: update for name, update in shown.items()}
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the story that was asked for."""

@@ -58,11 +58,11 @@ class SourcePanel(ABC):
 
     def gone(self) -> Parts:
         """Updates where there is no source."""
-        return {self.state: None, self.results.player: show(None), **self._without_result()}
+        return {self.state: None, self.results.player: show(None), **self.bare}
 
-    def _without_result(self) -> Parts:
-        """Updates that take away what is said of a result, and can be done with it, once another motion is shown."""
-        return {self.results.under: gr.update(visible=False), self.results.readouts: ""}
+    def own(self, source: Source | None) -> bool:
+        """Whether a source is a visitor's own file."""
+        return source is not None and source.path not in (None, *dict(self.examples).values())
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -80,13 +80,15 @@ class SourcePanel(ABC):
         """The list of a file's animations."""
         self.animation = animation_field(f"{self.prefix}animation")
 
-    def wire(self, record: gr.State, line: gr.HTML, go: gr.Button) -> None:
-        """Wires what a motion can be taken from: also the result in ``record``; ``line`` says what was taken.
+    def wire(self, tab: Any) -> None:
+        """Wires what a motion can be taken from, also the last result; while it is read, nothing can be run on it.
 
-        While it is read, ``go``, which runs something on it, cannot be pressed.
+        Args:
+            tab: a ``JobTab``, which says on its line what was taken, and what is left of a result beside it.
         """
-        self.line, self.go = line, go
-        shown = [self.state, line, self.results.player, self.results.under, self.results.readouts, *self.more(), go]
+        self.line, self.go = tab.line, tab.go
+        self.bare: Parts = {tab.outputs[name]: update for name, update in tab.bare().items()}
+        shown = [self.state, self.line, self.results.player, *self.bare, *self.more(), self.file, self.go]
         self.load_options: dict[str, Any] = {
             "outputs": shown,
             "concurrency_limit": 2,
@@ -98,9 +100,7 @@ class SourcePanel(ABC):
         self.camera.submit(self.read_film, inputs=self.camera, **load)
         for button, (name, path) in zip(self.chips, self.examples, strict=True):
             button.click(partial(self.load, partial(read_source, path, name)), **load)
-        self.take.click(self.take_result, inputs=record, **load)
-        others = [self.camera.submit, *(button.click for button in (*self.chips, self.take))]
-        gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
+        self.take.click(self.take_result, inputs=tab.record, **load)
         self.state.change(offered_animations, inputs=self.state, outputs=self.animation, queue=False, **QUIET)
         self.file.clear(self.forget, outputs=shown, queue=False, **QUIET)
         chosen = [*self.known, self.animation]
@@ -162,8 +162,8 @@ class SourcePanel(ABC):
         yield {self.line: status(waiting, tone="busy"), player: busy(waiting), self.go: gr.update(interactive=False)}
         try:
             source = read()
-            updates = {self.state: source, player: show(self.payload(source)), **self._without_result()}
-            updates |= self.described(source, at_end=at_end)
+            updates = {self.state: source, player: show(self.payload(source)), **self.bare}
+            updates |= self.described(source, at_end=at_end) | ({} if self.own(source) else {self.file: None})
         except Exception as error:
             updates = {player: busy(""), **(self.gone() if fresh else {})}
             updates[self.line] = status(error_line(error), tone="error")

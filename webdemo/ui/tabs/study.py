@@ -160,6 +160,6 @@ def result_html(study: StudyEntry) -> str:
         f'<tr><th scope="row">{text(name)}</th><td><b>{number}</b></td><td>{said}</td></tr>'
         for name, number, said in [*rows, ("No difference", study.ties, "")]
     )
-    shown = table("", ["Votes", "Share (95 % interval)"], body, "pd-votes")
+    shown = table("", ["Votes", "Share (95 % interval)"], body)
     voted = status(f"{line}{counted(votes, 'vote')} of {counted(study.voters, 'voter')}.")
     return f'{voted}<div class="pd-readouts">{shown}</div>'

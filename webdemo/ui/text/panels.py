@@ -89,7 +89,7 @@ def effect_line(results: Iterable[Result]) -> str:
 
 
 def method_line(summary: str) -> str:
-    """One line on a method, under the place where it is chosen."""
+    """A quiet line, such as on a method under the place where it is chosen."""
     return f'<p class="pd-method">{text(summary)}</p>'
 
 
@@ -110,10 +110,14 @@ def readout_panel(result: Result) -> str:
     if samples:
         compared = any(before is not None for before, _ in samples)
         caption = "Quality, before → after damping and clean-up" if compared else "Quality"
-        quality = _measures(caption, QUALITY, samples)
-        relation = _measures("Between the two", RELATION, [(None, after) for _, after in samples])
+        heads = [f"Sample {i + 1}" for i in range(len(samples))] if len(samples) > 1 else ["Value"]
+        columns = dict(zip(heads, samples, strict=True))
+        after = {head: (None, each) for head, (_, each) in columns.items()}
+        quality = measures_table(caption, QUALITY, columns)
+        relation = measures_table("Between the two", RELATION, after)
         tables = f'<div class="pd-tables">{quality}{relation}</div>'
-    figures = f"{_asked(result)}{tables}{_timings(result.timings)}"
+    spent = " · ".join(f"{stage} {seconds(taken)}" for stage, taken in result.timings.items())
+    figures = f"{_asked(result)}{tables}{method_line(spent) if spent else ''}"
     shown = f'<details class="pd-figures"><summary>All figures</summary>{figures}</details>'
     return f'<div class="pd-readouts">{shown}</div>'
 
@@ -144,30 +148,28 @@ def _asked(result: Result) -> str:
     return f'<dl class="pd-asked">{items}</dl>'
 
 
-def _measures(caption: str, measures: Sequence[Measure], samples: Sequence[tuple[Summary | None, Summary]]) -> str:
-    """A table: a row a measure, a column a sample."""
-    heads = [f"Sample {i + 1}" for i in range(len(samples))] if len(samples) > 1 else ["Value"]
-    rows = "".join(
-        f"{_head(measure)}{''.join(_cell(measure, before or {}, after) for before, after in samples)}</tr>"
-        for measure in measures
-    )
-    return table(caption, heads, rows)
+def measures_table(
+    caption: str, measures: Sequence[Measure], columns: Mapping[str, tuple[Summary | None, Summary]], first: str = ""
+) -> str:
+    """A table: a row a measure under the row ``first``, and a column for what is (before, after) by its name."""
+    rows = "".join(_row(measure, list(columns.values())) for measure in measures)
+    return table(caption, list(columns), first + rows)
 
 
-def _cell(measure: Measure, before: Summary, after: Summary) -> str:
-    """The value after, and the one before where it is shown as another."""
-    old, new = _value(measure, before), _value(measure, after)
-    if old in ("–", new):
-        return f"<td><b>{new}</b></td>"
-    tone = "" if new == "–" else "pd-better" if after[measure.key] < before[measure.key] else "pd-worse"
-    return f'<td class="{tone}">{old} → <b>{new}</b></td>'
-
-
-def _timings(timings: Mapping[str, float]) -> str:
-    if not timings:
-        return ""
-    items = " · ".join(f"{text(stage)} {seconds(spent)}" for stage, spent in timings.items())
-    return f'<p class="pd-timings">{items}</p>'
+def _row(measure: Measure, columns: Sequence[tuple[Summary | None, Summary]]) -> str:
+    """A measure's values, each after the one before where that reads differently, or the best and the worst marked."""
+    cells, key = "", measure.key
+    known = [round(after[key], measure.digits) for _, after in columns if key in after]
+    for given, after in columns:
+        before, tone = given or {}, ""
+        old, new = _value(measure, before), _value(measure, after)
+        changed = old not in ("–", new)
+        if changed and key in after:
+            tone = "pd-better" if after[key] < before[key] else "pd-worse"
+        elif given is None and measure.better and key in after and len(set(known)) > 1:
+            tone = {min(known): "pd-better", max(known): "pd-worse"}.get(round(after[key], measure.digits), "")
+        cells += f'<td class="{tone}">{f"{old} → " if changed else ""}<b>{new}</b></td>'
+    return f"{_head(measure)}{cells}</tr>"
 
 
 def _value(measure: Measure, values: Summary) -> str:
@@ -183,11 +185,11 @@ def _head(measure: Measure) -> str:
     return f'<tr title="{text(meaning)}"><th scope="row">{text(label)}{unit}</th>'
 
 
-def table(caption: str, heads: Sequence[str], rows: str, kind: str = "") -> str:
-    """A table: HTML ``heads`` over the columns behind the first, ``rows`` with their tags; ``kind`` is a class."""
-    cells = "".join(head if head.startswith("<th") else f'<th scope="col">{head}</th>' for head in heads)
+def table(caption: str, heads: Sequence[str], rows: str) -> str:
+    """A table: ``heads`` over the columns behind the first, and ``rows`` as HTML with their tags."""
+    cells = "".join(f'<th scope="col">{text(head)}</th>' for head in heads)
     named = f"<caption>{text(caption)}</caption>" if caption else ""
     return (
-        f'<div class="pd-table {kind}"><table>{named}<thead><tr><td></td>{cells}</tr></thead>'
+        f'<div class="pd-table"><table>{named}<thead><tr><td></td>{cells}</tr></thead>'
         f"<tbody>{rows}</tbody></table></div>"
     )
