@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from motion import InputError
 
-from .captions import naming, with_thing
+from .captions import naming, usual_limb, with_thing
 from .lexicon import Entry, Lexicon, kind_of, lexicon
-from .plan import FROM_BEHIND, ON_TIPTOE, Act, Plan, merged
+from .plan import ON_TIPTOE, Act, Plan, merged
 from .reading import wordnet
 from .reading.parses import Parse, parses
 from .reading.people import A_NAME, ANYONE, B_NAME
 from .reading.spelling import Speller
 from .reading.syntax import is_likeness, seems
-from .reading.vocabulary import closed, vocabulary
-from .shapes import Go
+from .reading.vocabulary import FORMATION, closed, vocabulary
+from .shapes import Gesture, Go, Strike, Touch
 
 if TYPE_CHECKING:
     from spacy.tokens import Token
@@ -39,6 +39,8 @@ _SLOWEST_WALK = 0.7
 """The factor of speed from which a verb says how fast somebody walks; slower ones are gaits of their own."""
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _PHRASAL = re.compile(r"\[([a-z-]+)\] (?:\{b\} )?([a-z]+)")
+_HANDLED = re.compile(r"\[([a-z-]+)\] (?:out |up )?(?:both|their|the|a|an) ([a-z]+)")
+"""A verb of captions with its object."""
 _WORD, _SLOTS = re.compile(r"[a-z]+"), re.compile(r"\{(?![\w.]+:)[^{}]*\}")
 
 
@@ -117,14 +119,17 @@ def _quoted(spans: list[tuple[int, int]], text: str) -> tuple[str, ...]:
 
 def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> bool:
     """True for an act whose captions say what the words of its clause do: a verb, or several of the other words."""
-    words, captions = vocabulary(), said_words(entry.caption)
-    verbs, said = _verbs(entry.caption), "".join(_lemma(t, parsed) for t in within)
-    parts = {family for t in within if (family := words.part(_lemma(t, parsed)))}
-    shown = {family for word in said_words((shown_caption(act, entry),)) if (family := words.part(word))}
-    if parts and shown and not parts & shown and "{part}" not in shown_caption(act, entry) and not act.part_of:
+    words, captions, caption = vocabulary(), said_words(entry.caption), shown_caption(act, entry)
+    verbs = _verbs(entry.caption)
+    parts = {words.part(_lemma(t, parsed)) for t in within} - {""}
+    shown = {words.part(word) for word in said_words((caption.replace("side by side", ""),))} - {""}
+    if parts and shown and not parts & shown and "{part}" not in caption and not act.part_of:
         return False  # "lays her head on B's lap" is not "on B's shoulder"
-    several = _VERB.findall(shown_caption(act, entry))
+    handled = any(verb in closed("handles") and words.named_part(noun) for verb, noun in _HANDLED.findall(caption))
+    several = _VERB.findall(caption)
     said_verbs = [_lemma(t, parsed) for t in within if t.pos_ in ("VERB", "NOUN")]
+    if (handled and not parts and not act.part) or not set(entry.loose).isdisjoint(said_verbs):
+        return False  # "sets her down" is not "puts both hands on B's waist"
     if len(several) > 1 and not all(
         verb in said_verbs or any(_alike(own, (verb,), ()) for own in said_verbs) for verb in several
     ):
@@ -140,12 +145,8 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
             return True
         if _alike(lemma, verbs, ()) or (token.pos_ == "VERB" and _is_kind_of(lemma, verbs)):
             return True
-        if lemma == act.act.split("-")[0] and any(_is_kind_of(verb, (lemma,)) for verb in verbs):
-            return True  # "lifts her", shown as "picks her up"
-        if lemma in words.gaits and any(isinstance(shape, Go) for shape in entry.stage):
-            return True
-    if any("-" in verb and verb.replace("-", "") in said for verb in verbs):
-        return True
+        if lemma in words.gaits and not (words.verbs["goes"] | words.gaits.keys()).isdisjoint(verbs):
+            return True  # and not "runs into B", who is bumped into
     own = [t for t in within if t.pos_ == "VERB" and _counts(t, parsed) and _lemma(t, parsed) not in words.light]
     empty = not any(_counts(t, parsed) for t in within)  # "starts to fight"
     return len(shared) >= 2 or (not own and (bool(shared) or empty))
@@ -157,7 +158,7 @@ def shown_caption(act: Act, entry: Entry) -> str:
     alike = [text for text in entry.caption if own in text and _slots(text) == _slots(usual)]
     alike = [text for text in alike if act.thing or not text.endswith("something")]
     limbs = {text: {vocabulary().named_part(word) for word in _WORD.findall(text)} & closed("limbs") for text in alike}
-    alike.sort(key=lambda text: (not act.part and bool(limbs[text]), text != usual))  # "drags", and not "by the feet"
+    alike.sort(key=lambda text: ((act.part or "") not in text, not act.part and bool(limbs[text]), text != usual))
     return next((text for text in alike if act.direction in text.split()), next(iter(alike), usual))
 
 
@@ -168,7 +169,7 @@ def _slots(caption: str) -> set[str]:
 def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
     """True for a word that says something of what is done, and is none of the people's names."""
     lemma, words = _lemma(token, parsed), vocabulary()
-    if _is_place(token) or _is_target(token) or token.lower_ == "half":
+    if _is_place(token) or _is_target(token) or token.lower_ == "half" or _joined(token, parsed):
         return True
     if token.pos_ not in _CONTENT or not token.text[0].isalnum() or (len(token.text) < 2 and not token.text.isdigit()):
         return False
@@ -216,43 +217,48 @@ def _read_by(token: Token, start: int, stop: int, plan: Plan, known: Lexicon, pa
 
 def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
     """True for a word that the verdict on an act says, or that one of its fields stands for."""
-    words, lemma, text = vocabulary(), _lemma(token, parsed), token.lower_
-    forms = {lemma, text, *_WORD.findall(text)}
+    words, lemma, text, caption = vocabulary(), _lemma(token, parsed), token.lower_, shown_caption(act, entry)
+    forms = {lemma, text, words.likeness.get(lemma, ""), *_WORD.findall(text)}
     way = words.directions.get(text) if token.pos_ != "VERB" else None  # and not "left the room"
     if way in closed("turns"):
         return way in (act.direction, act.side, act.part_side)
     if lemma in (act.act.split("-")[0], act.act.replace("-", "")):
         return True
     owned = any(c.dep_ == "poss" for c in token.children) and (not words.part(lemma) or act.part_of == act.patient)
-    if owned and act.patient and entry.to != "other" and "{b}" not in shown_caption(act, entry):
+    if owned and act.patient and entry.to != "other" and "{b}" not in caption:
         return False  # "buttons his coat" is not "buttons a coat"
+    if joined := _joined(token, parsed):
+        return joined in said_words(entry.caption)
     if text == "own":
         return act.patient is None or act.part_of in act.agents
-    if _is_target(token) and any(slot in shown_caption(act, entry) for slot in ("{b}", "{a+b}")):
-        goes_by = "past {b}" in shown_caption(act, entry)  # "staggers towards him" is not "past him"
+    if _is_target(token) and (entry.to == "other" or any(slot in caption for slot in ("{b}", "{a+b}"))):
+        goes_by = "past {b}" in caption  # "staggers towards him" is not "past him"
         return not goes_by and not any(c.lower_.endswith(("self", "selves")) for c in token.children)
     loose = token.pos_ in ("ADV", "ADP") and not _is_target(token)  # "dances around" is more than "dances"
-    said = said_words((shown_caption(act, entry),) if loose else entry.caption)
-    if any(forms & each for each in (said, set(" ".join(act.manner).split()))):
+    said = said_words((caption,) if loose else entry.caption) | set(" ".join(act.manner).split())
+    near = (closed(name) for name in ("next to", "past") if text in closed(name))
+    if forms & said or any(said_words(entry.caption) & each for each in near):
         return True
-    if words.likeness.get(lemma) in act.manner:
-        return True
-    if any(text in closed(name) and said_words(entry.caption) & closed(name) for name in ("next to", "past")):
-        return True
-    if text == "behind" and FROM_BEHIND in act.manner:
-        return True
-    if token.pos_ in ("VERB", "NOUN") and _alike(lemma, _verbs(entry.caption), entry.synsets):
+    verbs = _verbs(entry.caption)
+    puts = token.pos_ == "VERB" and lemma in closed("puts") and not closed("puts").isdisjoint(verbs)
+    if puts or (token.pos_ in ("VERB", "NOUN") and _alike(lemma, verbs, entry.synsets)):
         return True
     if act.thing and forms & set(act.thing.split()):  # "plays the violin" is not "plays the guitar"
-        shown = with_thing(act, shown_caption(act, entry))[1]
+        shown = with_thing(act, caption)[1]
         others = any(kind_of(word) for word in said_words((shown,)) - forms)
         return "{thing}" in shown or bool(entry.thing and kind_of(act.thing) and not others)
     if (family := words.part(lemma)) and not (lemma in words.metres and act.distance is not None):
         sided = act.side is not None and lemma in closed("limbs") and any(c.lower_ == act.side for c in token.children)
-        return sided or (act.part is not None and family == words.part(act.part))
-    if (text in words.speeds and act.speed != 1.0) or (lemma in closed("on tiptoe") and ON_TIPTOE in act.manner):
-        return True
-    if act.speed != 1.0 and words.gaits.get(lemma, 0.0) > _SLOWEST_WALK:
+        handles = token.head.lower_ == "with" and any(isinstance(s, Touch | Gesture | Strike) for s in entry.stage)
+        by_hand = handles and lemma == usual_limb(caption)  # "covers his eyes with his hands"
+        return sided or by_hand or (act.part is not None and family == words.part(act.part))
+    hurries = act.speed != 1.0 or any(isinstance(shape, Go) and shape.speed > 2.0 for shape in entry.stage)
+    paced = hurries and words.gaits.get(lemma, 0.0) > _SLOWEST_WALK
+    if (
+        paced
+        or (text in words.speeds and act.speed != 1.0)
+        or (lemma in closed("on tiptoe") and ON_TIPTOE in act.manner)
+    ):
         return True
     if (way is not None and way == act.direction) or (text == "both" and act.side == "both"):
         return True
@@ -277,7 +283,8 @@ def _is_read(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
 @lru_cache(maxsize=1024)
 def said_words(texts: tuple[str, ...]) -> frozenset[str]:
     """The words of frames and captions, without the slots of captions."""
-    return frozenset(word for text in texts for word in _WORD.findall(_SLOTS.sub("", text.lower())))
+    plain = " ".join(_SLOTS.sub("", text.lower()) for text in texts)
+    return frozenset((*_WORD.findall(plain), *_WORD.findall(plain.replace("-", ""))))  # "push-up" and "pushup"
 
 
 @lru_cache(maxsize=1024)
@@ -305,6 +312,12 @@ def _is_kind_of(lemma: str, verbs: tuple[str, ...]) -> bool:
 
 def _lemma(token: Token, parsed: Parse) -> str:
     return str(parsed.lemmas.get(token.i, token.lemma_.lower()))
+
+
+def _joined(token: Token, parsed: Parse) -> str:
+    """The part of the body of "arm in arm", which the parser gets as one word; "" for others."""
+    written = _WORD.findall(parsed.text.original[slice(*parsed.text.span(token.idx, token.idx + len(token)))].lower())
+    return written[0] if token.lower_ == FORMATION and written[0] in closed("joined") else ""
 
 
 def _is_place(token: Token) -> bool:

@@ -23,15 +23,9 @@ _SLOT = re.compile(r"\{([a-z_]+)\} ?")
 _BY_FOOT = re.compile(r"\[(?:kick|step|hop|walk|run|march|limp|stumble|stamp|turn|spin)\]")
 _NAMES = {"a": "person A", "b": "person B"}
 _COUNTS = {1: "once", 2: "twice", 3: "three times"}
-_PRONOUNS = frozenset(("it", "them", "something"))
 _WITH, _BESIDE = re.compile(r" with \{b\}"), re.compile(r" (with|past) \{b\}")
 _OTHER = re.compile(r"(?<! each) other$")
-_PLAIN = frozenset(("a", "an", "the", "their"))
-_BEFORE_PEOPLE = frozenset(("to", "with", "at", "of"))
-_LEAN = frozenset(("to", "with", "at", "of", "on", "by", "in", "past", "from", "around", "behind", "into"))
 _AHEAD = {"tried": "try to", "offered": "offer to", "pretended": "pretend to", "wished": "want to"}
-TURNS = frozenset(("left", "right", "clockwise", "counterclockwise", "anticlockwise"))
-"""Directions that are named beside any act."""
 
 
 def singular(verb: str) -> str:
@@ -75,7 +69,7 @@ def worded(act: Act, caption: str) -> str:
     caption = caption.replace("{a+b}", "{a}")
     caption = caption if act.part else caption.replace(" on the {part}", "").replace("'s {part}", "")
     trunk = vocabulary().part(act.part or "") in closed("trunk")  # which is touched, and touches nothing
-    limb = ("" if trunk else act.part) or ("foot" if _BY_FOOT.search(caption) else "hand")
+    limb = ("" if trunk else act.part) or usual_limb(caption)
     text = _VERB.sub(lambda m: ("are" if m[1] == "be" else m[1]) if both else singular(m[1]), caption)
     values = {
         "a": "they" if both else _NAMES[act.agents[0]],
@@ -110,10 +104,15 @@ def _by_hand(act: Act, caption: str) -> str:
     return by_limb(act, caption)
 
 
+def usual_limb(caption: str) -> str:
+    """The limb by which an act is done where the words name none: the foot that kicks, else the hand."""
+    return "foot" if _BY_FOOT.search(caption) else "hand"
+
+
 def by_limb(act: Act, caption: str) -> str:
     """The limb on the act's side that does it: " with the left foot"."""
     own = act.part if act.part in closed("limbs") and act.part_of in act.agents else None
-    limb = own or ("foot" if _BY_FOOT.search(caption) else "hand")
+    limb = own or usual_limb(caption)
     return f" with both {plural(limb)}" if act.side == "both" else f" with the {act.side} {limb}"
 
 
@@ -124,7 +123,7 @@ def with_thing(act: Act, caption: str) -> tuple[Act, str]:
         if act.thing and ((article == "something" and kind_of(act.thing)) or (article == "a" and kind_of(noun))):
             caption = " ".join([*words[:i], "{thing}", *words[i + 1 + (article == "a") :]])
             break
-    named = act.thing if act.thing in _PRONOUNS else f"the {act.thing}"
+    named = act.thing if act.thing in closed("pronouns of things") else f"the {act.thing}"
     return (act.model_copy(update={"thing": named}) if act.thing else act), caption
 
 
@@ -229,8 +228,8 @@ def short(act: Act, entry: Entry | None) -> str:
     plain = ahead or both
     phrase = _phrase(act, entry, "each other" if both else "")
     text = f"{ahead} {_VERB.sub(lambda m: m[1] if plain else singular(m[1]), phrase)}".strip()
-    side = act.direction if act.direction in TURNS else act.side
-    if side in TURNS and f" {side} " not in f" {text} ":
+    side = act.direction if act.direction in closed("turns") else act.side
+    if side in closed("turns") and f" {side} " not in f" {text} ":
         turns = side == act.direction or "[turn]" in phrase
         limb = by_limb(act, phrase).replace(" the ", " ")
         text += limb if not turns else f" to the {side}" if side in ("left", "right") else f" {side}"
@@ -278,9 +277,10 @@ def _phrase(act: Act, entry: Entry | None, both: str) -> str:
         if word == "'s" and both:
             kept[-1] += word
         elif word in ("*", "'s"):
-            while word == "*" and kept and kept[-1] in (_LEAN if act.patient is None else _BEFORE_PEOPLE):
+            before = closed("to people" if act.patient else "to whatever")
+            while word == "*" and kept and kept[-1] in before:
                 kept.pop()
-        elif word not in _PLAIN:
+        elif word not in closed("plain"):
             kept.append(word)
     while kept and kept[-1] in ("on", "of", "to", "with", "at", "from", "against"):
         kept.pop()

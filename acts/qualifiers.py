@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from motion.metrics.sentences.touches import BODY, has_sides
 
 from .accounting import said_words, shown_caption
-from .captions import plural
+from .captions import plural, usual_limb
 from .lexicon import Entry
 from .plan import FROM_BEHIND, ON_TIPTOE, Act
 from .reading.vocabulary import closed, is_act, vocabulary
@@ -72,13 +72,9 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     told = {FROM_BEHIND, ON_TIPTOE, *closed("fillers"), *vocabulary().speeds}
     if not told.issuperset(act.manner):
         yield "in which manner", ""
-    if (
-        act.part
-        and "part" not in names
-        and words.isdisjoint((act.part, plural(act.part)))
-        and "{part}" not in caption
-        and "{limb}" not in caption
-    ):
+    own = act.part_of in act.agents and act.part == usual_limb(caption)  # who waves with a hand
+    seen = {"part", vocabulary().part(act.part or "")} & names | {act.part, plural(act.part or "")} & words
+    if act.part and not (own or seen or "{part}" in caption or "{limb}" in caption):
         yield "where on the body", ""
     other = act.thing and "{b}" in caption and not entry.thing and not set(act.thing.split()) & words
     if other and act.thing not in closed("fillers") and not is_act(act.thing or ""):

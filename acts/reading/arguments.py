@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
-from acts.lexicon import Lexicon
+from acts.lexicon import Lexicon, kind_of
 
 from . import wordnet
 from .people import Cast, states_of
@@ -292,10 +292,11 @@ class Arguments:
             return
         if lemma in self._words.seconds:  # "on count five", "with a delay of one second"
             return
+        act = event.lemma in closed("does") or is_act(lemma) or lemma in self._deeds | closed("paths") | closed("times")
         if self._is_length(noun):
             event.distance = value * self._words.metres[lemma]
             event.times = int(value) if lemma in ("step", "pace") else event.times
-        elif not self._words.part(lemma) and value <= 100:
+        elif value <= 100 and act and not (self._words.part(lemma) or kind_of(lemma)):  # and not "three balls"
             event.times = max(int(value), 1)
 
     def _modifier(self, token: Token, event: Event) -> None:

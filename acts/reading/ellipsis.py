@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 _ENDS = frozenset(("", ",", ";", ":", ".", "!", "?", "-", "then", "and"))
 _JOINS = frozenset((",", "and", "then"))
-_SIDES = frozenset(("left", "right", "forward", "forwards", "backward", "backwards"))
 PERFORM = "perform"
 """The verb of a noun that has none, which the parser takes for nothing else."""
 _LONGEST = 5
@@ -175,13 +174,13 @@ class Ellipsis:
         at = i - 1
         while self._lower(at) in _JOINS or self._lower(at) == "first":
             at -= 1
-        noun = self._lower(at) not in _SIDES
+        noun = self._lower(at) not in closed("to sides")
         first = at - noun
-        if self._lower(first) not in _SIDES or (noun and not self._is_sided(at)):
+        if self._lower(first) not in closed("to sides") or (noun and not self._is_sided(at)):
             return ""
         own = self._lower(i) in closed("before sides")
         side = i + own + (self._lower(i + own) in closed("owners"))
-        last = side + (self._lower(side) in _SIDES)
+        last = side + (self._lower(side) in closed("to sides"))
         more = noun and self._is_sided(last)
         behind = self._lower(last + more)
         ends = behind in _ENDS | closed("clause begins") | {"again", "side"} or is_adverb(behind)

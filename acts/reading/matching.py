@@ -16,7 +16,7 @@ from . import wordnet
 from .ellipsis import PERFORM
 from .relations import BESIDE
 from .spelling import deeds
-from .vocabulary import closed, is_act, vocabulary
+from .vocabulary import FORMATION, closed, is_act, vocabulary
 
 LEAST_SCORE = -1.0
 """What a frame must score to be taken at all: more beside it than in it is another sentence."""
@@ -155,7 +155,7 @@ def matcher(known: Lexicon) -> Matcher:
 
 
 # ---- what other words say of a clause: an object, whom it is done to, acts beside a verb --------------
-_SHARING = frozenset(("conj", "after", "with"))
+_SHARING = frozenset(("conj", "comma", "after", "with"))
 """Joints of clauses that may share an object."""
 
 
@@ -250,11 +250,10 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
     """
     verbs, subject, ref = vocabulary().verbs, event.subject, event.object
     repeats = event.lemma in verbs["repeats"]
-    named = ref is None or ref.lemma in closed("same") or ref.kind == "person"
-    named = named or (ref is not None and ref.lemma == "thing" and "same" in event.words)
-    named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in closed("movements")))
-    named = named or (ref is not None and ref.lemma == (last.thing or last.part))
-    named = named or (repeats and ref is not None and ref.lemma in known.frames)
+    same = closed("same") | {last.thing or last.part, *(["thing"] if "same" in event.words else [])}
+    named = ref is None or ref.kind == "person" or ref.lemma in same
+    if ref is not None and repeats:
+        named = named or ref.kind == "part" or ref.lemma in closed("movements") | known.frames.keys()
     if subject is None or subject.kind != "person" or not named:
         return None
     if has_inner and not (repeats and ref is not None and ref.lemma in closed("same")):
@@ -262,9 +261,8 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
     declines = event.lemma in verbs["not"] | verbs["wished"]
     if event.lemma != "do" and not repeats and not declines:
         return None
-    if declines and not (event.denied or event.lemma in verbs["not"]):
-        return None
-    if declines and ref is not None and ref.lemma not in closed("same") and ref.lemma != (last.thing or last.part):
+    refused = (event.denied or event.lemma in verbs["not"]) and (ref is None or ref.lemma in same)
+    if declines and not refused:
         return None
     agents, other = tuple(subject.who), other_of(subject.who) or "a"
     if len(last.agents) > 1 or (len(agents) > 1 and event.lemma != "do"):
@@ -291,12 +289,6 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
 # ---- acts beside a verb --------------------------------------------------------------------------------
 Find = Callable[[Event], Found | None]
 
-_OWN = {
-    "back": frozenset(("sit", "kneel", "lie", "lean")),
-    "unison": frozenset(("dance", "move", "act", "perform")),
-    "canon": frozenset(("dance", "move", "act", "perform", "do")),
-}
-"""Verbs that a formation goes with as one act: "they sit back to back"."""
 _EACH = Ref("each", "ab", "other")
 
 
@@ -332,7 +324,10 @@ def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
         names = [name for name in names if name == "keep apart"]
     for name in dict.fromkeys(names):
         verb, _, noun = name.partition(" ")
-        own = event.lemma in _OWN.get(noun, ())
+        if noun in closed("limbs") and event.lemma in closed("strolls"):  # "walks with her arm in arm"
+            yield replace(event, words=[*(word for word in event.words if word != FORMATION), noun])
+            continue
+        own = event.lemma in vocabulary().classes.get(f"own {noun}", ())
         verb = event.lemma if own else verb
         if noun == "unison" and not own and event.lemma in vocabulary().verbs["goes"]:
             noun = "step"
@@ -343,6 +338,8 @@ def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
             formed.subject, formed.object = Ref("person", "b"), Ref("person", "a")
         elif noun in ("apart", "close", "back"):
             formed.words = ["back", "to", "back"] if noun == "back" else [noun]
+        elif noun in closed("limbs"):
+            formed.object = Ref("part", "ab", noun, noun, "both")
         elif noun in ("each", "line"):
             formed.object = _EACH if noun == "each" else Ref("thing", lemma=noun)
         else:

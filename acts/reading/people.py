@@ -165,7 +165,7 @@ class Cast:
         """True for a noun that is a person where it acts: "the model poses", "the base lies on her back"."""
         if len(self._known) == 2 or self._words.part(token.lemma_.lower()):
             return False
-        return wordnet.may_be_person(token.lemma_.lower())
+        return wordnet.may_be_person(token.lemma_.lower()) and not wordnet.is_animal(token.lemma_.lower())
 
     def _many(self, token: Token, children: set[str]) -> str:
         if any(self._words.numbers.get(child, 0) > 2 for child in children):  # "three people"

@@ -163,8 +163,7 @@ class _Planner:
             self._unread.append(Unread(words=self._span(number), why="Bodies cannot show this."))
         elif match is not None:
             if inner and any(self._events[i].lemma in f for f in (e.words for e in match[1].elements) for i in inner):
-                self._taken.update(inner)
-                self._clauses[number] = (self._clauses[number][0], max(self._clauses[i][1] for i in (number, *inner)))
+                self._takes(number, inner)
             near = self._found(next_to(event, match, self._known))
             comes = [each for each in near if each[0].lemma == "sidle"]
             for coming, found in comes:
@@ -173,7 +172,13 @@ class _Planner:
             self._add(number, event, *match, beside=then)
             self._companions(number, event, match, formed if comes else [*formed, *near])
         elif event.lemma not in closed("shows nothing") and not (inner and self._about_another(event)):
+            self._takes(number, [i for i in inner if self._events[i].lemma in closed("shows nothing")])
             self._not_read(number, event)
+
+    def _takes(self, number: int, inner: Sequence[int]) -> None:
+        """Makes clauses below one a part of it: "guesses who it is"."""
+        self._taken.update(inner)
+        self._clauses[number] = (self._clauses[number][0], max(self._clauses[i][1] for i in (number, *inner)))
 
     def _found(self, events: Iterable[Event]) -> list[tuple[Event, Found]]:
         """The events that mean an act, with it."""

@@ -320,7 +320,11 @@ class Reader:
             main = next(reversed(self._tree.mains), None)
             if main is None or self.doc[main].sent.start != token.sent.start:
                 return "after", None
-            return "after" if any(t.text == ";" for t in self.doc[main : token.i]) else "conj", main
+            between = self.doc[main : token.i]
+            joined = not has(token, "nsubj", "nsubjpass") or any(t.pos_ == "CCONJ" for t in between)
+            joined = joined or any(c.dep_ == "npadvmod" for c in self.doc[main].lefts)  # "each time he bows, she …"
+            kind = "conj" if joined else "comma"  # "he kicks the ball, she dives"
+            return "after" if any(t.text == ";" for t in between) else kind, main
         if above is None:
             return "after", None
         if token.dep_ == "pobj":

@@ -60,8 +60,9 @@ def related(
             other = acts[_last_after(talk, act.id, told, relations, known)] if talk else other
         if other.id == act.id:  # two clauses that the parser hangs on each other
             continue
-        if kind == "conj":
-            kind = coordinated(other, act, known, repeats=act.id in repeated)
+        if kind in ("conj", "comma"):
+            in_turn = act.id in repeated or (kind == "comma" and not _people_of(other) & _people_of(act))
+            kind = coordinated(other, act, known, repeats=in_turn)
         if kind == "after" and not then and _answers_blow(other, act, known):
             kind = "with"
         if kind == "after":

@@ -171,9 +171,7 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
         doc: the text as it was parsed.
         forms: the forms of verbs, as form → (lemma, ending).
     """
-    mistaken = {
-        token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0]) for token in _verbless(doc, forms)
-    }
+    mistaken: dict[int, tuple[str, str]] = {}
     last = ""  # the ending of the last finite verb of the sentence
     for token in doc:
         last = "" if token.is_sent_start else last
@@ -199,35 +197,22 @@ def deeds_done(doc: Doc, is_deed: Callable[[str], bool]) -> dict[int, tuple[str,
     """
     do = vocabulary().do
     return {
-        token.idx: (do[token.lower_], "do")
-        for token in doc
-        if token.lower_ in do
-        and token.dep_ == "aux"
-        and token.head.i == token.i + 1
-        and any(is_deed(c.lemma_.lower()) and c.left_edge.i == token.i + 2 for c in token.head.children)
+        t.idx: (do[t.lower_], "do")
+        for t in doc
+        if t.lower_ in do
+        and t.dep_ == "aux"
+        and (
+            (t.head.pos_ == "NOUN" and is_deed(t.head.lemma_.lower()))  # "does ten jumping jacks while …"
+            or any(is_deed(c.lemma_.lower()) and t.i + 2 == c.left_edge.i == t.head.i + 1 for c in t.head.children)
+        )
     }
 
 
-def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]:
-    """The verb of each sentence that seems to have none: "The man in the hat waves."."""
-    for sentence in doc.sents:
-        if any(token.pos_ in ("VERB", "AUX") for token in sentence):
-            continue
-        known = [
-            token
-            for token in sentence
-            if token.i > sentence.start + 1
-            and token.pos_ in ("NOUN", "PROPN")
-            and forms.get(token.lower_, ("", ""))[1] in ("s", "ed")
-            and token.nbor(-1).pos_ in ("NOUN", "PROPN", "PRON")  # "the man in the hat waves"
-            and _ends_phrase(token)
-        ]
-        yield from known[-1:]
-
-
 def _is_ordered(token: Token, ending: str) -> bool:
-    """True for "swing" in ", swing arms, …", which stands as a part of the noun."""
+    """True for "swing" in ", swing arms, …", a part of the noun to the parser, and "wave" in "Wave, bow and leave"."""
     begins = token.is_sent_start or token.nbor(-1).text in (",", ";")
+    if ending == "" and token.is_sent_start and token.dep_ == "dep" and token.i + 1 < len(token.doc):
+        return token.nbor().text == "," and token.head.tag_ == "VB" and not vocabulary().is_person(token.lower_)
     if ending != "" or not begins or token.dep_ != "compound":
         return False
     parts = token.head.tag_ == "NNS" and bool(vocabulary().part(token.head.lemma_.lower()))
@@ -300,9 +285,10 @@ def _coordinated(token: Token, ending: str, last: str) -> bool:
 
 
 def _before_verb(token: Token) -> bool:
-    """True for the last but one of listed verbs: "run up, hug and then bow", "run up, hug, and bow"."""
-    behind = [t for t in token.doc[token.i + 1 : token.i + 6] if t.pos_ != "ADV" and t.text != ","]
-    return len(behind) > 1 and behind[0].pos_ == "CCONJ" and behind[1].tag_ in ("VB", "VBP")
+    """True for the last but one of listed verbs: "run up, hug and then bow", "run up, hug, then bow"."""
+    behind = [t for t in token.doc[token.i + 1 : token.i + 6] if t.lower_ == "then" or t.pos_ not in ("ADV", "PUNCT")]
+    joined = bool(behind) and (behind[0].pos_ == "CCONJ" or behind[0].lower_ == "then")
+    return joined and any(t.tag_ in ("VB", "VBP") for t in behind[1:3])
 
 
 def _is_absolute(token: Token) -> bool:

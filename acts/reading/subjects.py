@@ -76,8 +76,10 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
     if token.lower_ in ("other", "another") and children & {"each", "one"}:
         return Ref("each", "ab", "other", first=first, last=last)
     behind = cast.alone and token.dep_ == "pobj"  # "holds them in front of them"
-    if token.lower_ == "them" and cast.things is not None and len(subject) == 1 and not behind:
-        return replace(cast.things, first=first, last=last)  # "drops her keys, and he picks them up"
+    many = cast.things  # "drops her keys, and he picks them up", "opens her arms, and he runs into them"
+    meant = many is not None and (many.kind == "thing" or cast.alone or token.head.lower_ == "into")
+    if token.lower_ == "them" and many is not None and meant and len(subject) == 1 and not behind:
+        return replace(many, first=first, last=last)
     if token.lower_ == "it" and cast.thing is not None and not cast.person(token):
         said_of = cast.thing_of if cast.thing_of != subject and len(cast.thing_of) == 1 else ""
         hers = bool(cast.thing_sex) and cast.thing_sex == cast.sex(subject)  # "kisses her hand; she withdraws it"
@@ -104,7 +106,7 @@ def _is_aside(token: Token, cast: Cast) -> bool:
 def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
     """Notes what "it" and "them" mean from here on."""
     light = token.head.lemma_.lower() in vocabulary().verbs["light"]  # "does two jumps"
-    many = ref.kind == "thing" or (ref.kind == "part" and cast.alone)
+    many = ref.kind == "thing" or (ref.kind == "part" and (cast.alone or token.head.lemma_ in closed("opens")))
     taken = token.dep_ == "dobj" or (ref.kind == "part" and token.head.lower_ in ("with", "of"))
     if many and token.tag_ == "NNS" and taken and (ref.kind == "part" or not light):
         cast.things = ref
@@ -130,7 +132,8 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
     if family and not (token.ent_type_ or token.pos_ == "PROPN"):
         owner = cast.owner(token, subject)
         side = next((child.lower_ for child in token.children if child.lower_ in ("left", "right", "both")), "")
-        if not side and token.tag_ == "NNS" and family in ("hand", "arm", "foot", "leg", "knee", "shoulder"):
+        many = token.tag_ == "NNS" and all(c.lower_ not in ("a", "an") for c in token.children)  # not "a thumbs up"
+        if not side and many and family in ("hand", "arm", "foot", "leg", "knee", "shoulder"):
             side = "both"
         lemma = "back" if lemma == "spine" else lemma
         bare = all(c.dep_ != "poss" and c.tag_ != "PRP$" and c.lower_ != "of" for c in token.children)
@@ -286,12 +289,7 @@ class Subjects:
                 return ref
             if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
                 return reference(child, self._cast, helper.who if helper is not None else "")
-            if child.dep_ in ("det", "preconj") and child.lower_ in (
-                "both",
-                "all",
-                "each",
-                "neither",
-            ):  # "…, both freeze"
+            if child.dep_ in ("det", "preconj") and child.lower_ in closed("of all"):  # "…, both freeze"
                 return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
         return None
 

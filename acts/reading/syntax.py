@@ -208,18 +208,27 @@ def adverb_of(adjective: str) -> str:
 
 def is_finite(token: Token) -> bool:
     """True for a verb with a tense, which has a subject of its own."""
-    return token.tag_ not in ("VBG", "VBN") and token.dep_ not in ("xcomp", "pcomp")
+    bare = token.tag_ in ("VBG", "VBN") or (token.dep_, token.tag_) == ("ccomp", "VB")  # "helps him get up and walks"
+    return not bare and token.dep_ not in ("xcomp", "pcomp")
 
 
 def may_be_main(token: Token) -> bool:
     """True for a clause that is a main one if the one above it is."""
-    if token.dep_ == "ccomp":  # of two clauses with nothing but a comma between them, the first
-        return token.i < token.head.i and has(token, "nsubj", "nsubjpass", "nummod", "expl")
+    if token.dep_ == "ccomp":  # of two clauses with nothing but a comma between them
+        own = next((c for c in token.children if c.dep_ in ("nsubj", "nsubjpass", "nummod", "expl")), None)
+        first = own.left_edge if own is not None else token
+        spliced = first.i > token.head.i and first.nbor(-1).text == "," and token.tag_ in ("VBZ", "VBD", "VBP")
+        return own is not None and (token.i < token.head.i or spliced)  # "they argue, she turns away"
     if token.dep_ == "advcl":
         words = vocabulary()
         marks = any(c.dep_ in ("mark", "aux") or c.lower_ in words.marks for c in token.children)
         return not marks and token.tag_ in ("VB", "VBP", "VBZ")
     return token.dep_ in ("conj", "parataxis")
+
+
+def _is_asked(verb: Token) -> bool:
+    """True for a verb beside which none of the clause above stands: "guesses who it is and turns"."""
+    return verb.dep_ == "ccomp" and any(c.tag_ in ("WP", "WRB") for c in verb.children)
 
 
 class ClauseTree:
@@ -295,7 +304,8 @@ class ClauseTree:
             known = known and not self._words.part(token.lemma_.lower())
             return known and token.head.head.pos_ in ("VERB", "AUX") and not self._words.is_person(token.lemma_.lower())
         if token.dep_ == "ROOT" and token.pos_ in ("NOUN", "PROPN", "ADJ", "INTJ", "ADV", "ADP", "X"):
-            return self.lemma(token) in self._verbs or token.i in self._lemmas
+            named = any(c.lower_ == "the" for c in token.children)  # "the bridge kneels"
+            return (self.lemma(token) in self._verbs and not named) or token.i in self._lemmas
         return token.dep_ in ("conj", "pcomp", "advcl", "dep") and token.i in self._lemmas
 
     def head(self, token: Token) -> Token | None:
@@ -304,8 +314,8 @@ class ClauseTree:
             clauses = (head for head in token.ancestors if self.is_clause(head))
             first = next(clauses, None)
             if first is not None and token.dep_ == "conj" and token.tag_ in ("VBZ", "VBD"):
-                finite = (h for h in (first, *clauses) if is_finite(h))
-                first = self._listed(token) or self._nearer(token, next(finite, first))
+                finite = (h for h in (first, *clauses) if is_finite(h) and not _is_asked(h))
+                first = self._listed(token) or next(finite, first)
             self._heads[token.i] = first
         return self._heads[token.i]
 
@@ -314,13 +324,6 @@ class ClauseTree:
         verb = next((t for t in reversed(self.doc[: token.i]) if t.tag_ in ("VBZ", "VBD")), token)
         goes_on = verb.dep_ == "relcl" and token.nbor(-1).text == "," and has(token, "cc")
         return verb if goes_on and not has(token, "nsubj") else None
-
-    def _nearer(self, token: Token, head: Token) -> Token:
-        """The main clause behind ``head`` with its own subject: "he talks, but she turns and covers her ears"."""
-        if has(token, "nsubj", "nsubjpass"):
-            return head
-        later = [self.doc[i] for i in self.mains if head.i < i < token.i and self.doc[i].sent == token.sent]
-        return next((t for t in reversed(later) if has(t, "nsubj")), head)
 
     def is_main(self, token: Token, told: bool = False) -> bool:
         """True for a clause that stands by itself in the order of the text, as one does of which it is ``told``."""

@@ -23,7 +23,7 @@ class Vocabulary:
     """The words of ``words.toml``, and WordNet's nouns of people."""
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
-        self._people = _sets(tables["people"])
+        self._people, self._names = _sets(tables["people"]), _sets(tables["names"])
         self.shorthand: dict[str, str] = dict(tables["shorthand"])
         self.places = frozenset(tables["places"]["nouns"].split())
         self.seats = frozenset(tables["places"]["seats"].split())
@@ -85,8 +85,8 @@ class Vocabulary:
         return any(lemma in self._people[key] for key in ("m", "f", "child", "more"))
 
     def sex(self, lemma: str) -> str:
-        """ "m", "f" or "" for a noun of a person."""
-        usual = next((sex for sex in "mf" if lemma in self._people[sex]), None)
+        """ "m", "f" or "" for a noun of a person, or a name, in small letters."""
+        usual = next((sex for sex in "mf" if lemma in self._people[sex] | self._names[sex]), None)
         return usual or wordnet.people().get(lemma, "")
 
     def age(self, lemma: str) -> str:
@@ -118,13 +118,6 @@ def vocabulary() -> Vocabulary:
     return Vocabulary(tomllib.loads(Path(__file__).with_name("words.toml").read_text(encoding="utf-8")))
 
 
-class _Classes(dict[str, frozenset[str]]):
-    """Those of the vocabulary, which is read when a first one is looked up."""
-
-    def __missing__(self, name: str) -> frozenset[str]:
-        self.update(vocabulary().classes)
-        return vocabulary().classes[name]
-
-
-closed = _Classes().__getitem__
-"""A closed class of words, by its name in ``words.toml``: those with which an owner is named, say."""
+def closed(name: str) -> frozenset[str]:
+    """A closed class of words, by its name in ``words.toml``: those with which an owner is named, say."""
+    return vocabulary().classes[name]

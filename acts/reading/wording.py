@@ -84,6 +84,8 @@ class _Preparation:
         swung = next((words for words in self._words.to_sides if self._stand_at(i, words)), ())
         if swung and self._words.named_part(self._lower(i - 1)):
             return self._as_one("sideways", i, len(swung))  # "shakes his head left and right"
+        if swung and any(self._forms.get(self._lower(k), "-")[0] in closed("looks") for k in range(i - 4, i)):
+            return self._as_one("around", i, len(swung))  # "looks left and right for her"
         for phrase, word in self._words.phrases.get(self._lower(i), ()):
             if self._stand_at(i, phrase):
                 return self._as_one(word, i, len(phrase))

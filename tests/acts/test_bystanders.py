@@ -18,24 +18,8 @@ RECORDED = Path(__file__).parents[1] / "data" / "bystanders" / "bystanders.npz"
 STANDS = {"stand-still", "freeze", "keep-distance", "face-other"}
 TALKS = {"talk", "argue", "nod", "bend-arm", "look-up", "lift-head"}
 """What a person does who talks with hands and head."""
-WALKS = {
-    "walk-up",
-    "walk-away",
-    "walk-past",
-    "walk-ahead",
-    "move-about",
-    "step-forward",
-    "part",
-    "step-over",
-    "cross-way",
-    "return",
-    "go-back",
-    "exit",
-    "enter",
-    "back-turned",
-    "copy",
-    "mirror",
-}
+WALKS = {"walk-up", "walk-away", "walk-past", "walk-ahead", "move-about", "step-forward", "part", "step-over"}
+WALKS |= {"cross-way", "return", "go-back", "exit", "enter", "back-turned", "copy", "mirror"}
 """What two people do who walk past each other: come near, go away, leave the other behind, step alike."""
 PAIRS = {
     "idle": [

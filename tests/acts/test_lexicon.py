@@ -8,7 +8,6 @@ from acts.__main__ import check_entry, check_folder
 from acts.lexicon import OURS, lexicon
 from acts.reading import read, wordnet
 from acts.staging.stage import score_of
-from motion import InputError
 
 ENTRIES = lexicon().entries
 
@@ -81,8 +80,3 @@ def test_an_entry_that_jumps_or_bows_and_gestures_does_both(
     score = score_of(read("She ollies.").acts)
     assert "a" in score.figures and "a" in score.gestures
     assert "a" not in score.gesturing, "who only gestures stands still"
-
-
-def test_a_folder_that_is_none_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="not a folder of acts"):
-        list(check_folder(tmp_path / "nowhere"))

@@ -92,12 +92,6 @@ def test_what_follows_on_a_touch(text: str, acts: list[str]) -> None:
     assert not found[1].already
 
 
-@pytest.mark.parametrize(("text", "acts"), [("Two kids spin holding hands.", "ring")])
-def test_what_visitors_type(text: str, acts: str) -> None:
-    found = read(text)
-    assert found.acts[-1].act == acts and not found.unread
-
-
 @pytest.mark.parametrize(
     "words", ["in the right direction", "in right direction", "to the right side", "towards the right"]
 )

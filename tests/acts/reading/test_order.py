@@ -13,19 +13,11 @@ def test_an_act_that_repeats_the_one_before_comes_after_it() -> None:
     assert coordinated(first, then, lexicon(), repeats=True) == "after"
 
 
-def test_only_two_who_hold_each_other_walk_meanwhile() -> None:
-    both = ("a", "b")
-    then = Act(id="2", act="strut", agents=both)
-    assert coordinated(Act(id="1", act="hold-hands", agents=both), then, lexicon(), repeats=False) == "with"
-    assert coordinated(Act(id="1", act="bow", agents=both), then, lexicon(), repeats=False) == "after"
-
-
-def test_two_who_hold_hands_spin_or_swing_their_arms_meanwhile() -> None:
-    both = ("a", "b")
-    held, swung = Act(id="1", act="hold-hands", agents=both), Act(id="1", act="swing-arms", agents=both)
-    for first, act in ((held, "ring"), (held, "swing-arms"), (swung, "walk-together")):
-        assert coordinated(first, Act(id="2", act=act, agents=both), lexicon(), repeats=False) == "with", act
-    assert coordinated(swung, Act(id="2", act="bow", agents=both), lexicon(), repeats=False) == "after"
+def test_two_who_hold_hands_walk_spin_or_swing_their_arms_meanwhile() -> None:
+    together = {*(("hold-hands", then) for then in ("strut", "ring", "swing-arms")), ("swing-arms", "walk-together")}
+    for first, then in (*together, ("bow", "strut"), ("swing-arms", "bow")):
+        acts = [Act(id=str(i), act=act, agents=("a", "b")) for i, act in enumerate((first, then))]
+        assert (coordinated(*acts, lexicon(), repeats=False) == "with") == ((first, then) in together), (first, then)
 
 
 @pytest.mark.parametrize("words", ["A bows out.", "A plays up.", "He calls off.", "She sits out."])
@@ -50,6 +42,20 @@ def test_what_an_act_waits_for_comes_after_what_is_told_before(words: str) -> No
     order = {act.act: {relation.act for relation in act.order} for act in read(words).acts}
     ids = {act.act: act.id for act in read(words).acts}
     assert not order["pat"] and order["turn-around"] == {ids["pat"]} and ids["turn-around"] in order["hide-and-seek"]
+
+
+@pytest.mark.parametrize(
+    ("words", "kind"),
+    [
+        ("They argue, she turns away.", "after"),
+        ("A kicks the ball, B dives.", "after"),
+        ("A kicks the ball and B dives.", "with"),
+        ("A kicks the ball while B dives.", "while"),
+        ("A punches, B ducks.", "with"),
+    ],
+)
+def test_clauses_with_only_a_comma_between_them_follow_each_other(words: str, kind: str) -> None:
+    assert [relation.kind for relation in read(words).acts[1].order] == [kind]
 
 
 @pytest.mark.parametrize("words", ["high-five, walk", "They hug and then part."])

@@ -4,19 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from acts import Act, read
+from acts import read
 from acts.reading.wording import begins_with_subject
-
-
-def said(text: str) -> list[str]:
-    """The acts as "a hug b", with marks for those that do not happen."""
-    return [_said(act) for act in read(text).acts]
-
-
-def _said(act: Act) -> str:
-    mark = "" if act.modality == "told" else f" ({act.modality})"
-    not_ = "not " if act.polarity == "not" else ""
-    return f"{''.join(act.agents)} {not_}{act.act}{f' {act.patient}' if act.patient else ''}{mark}"
+from tests.acts.reading.reading import said
 
 
 @pytest.mark.parametrize(
@@ -24,8 +14,6 @@ def _said(act: Act) -> str:
     [
         ("A hugs B.", ["a hug b"]),
         ("A pats B on the back, and then B hugs A.", ["a pat b", "b hug a"]),
-        ("A pats B, and B pats A.", ["a pat b", "b pat a"]),
-        ("Two people hug each other.", ["ab hug"]),
         ("They don't hug.", ["ab not hug"]),
         ("Nobody hugs.", ["ab not hug"]),
         ("He can't hug her.", ["a not hug b"]),
@@ -36,20 +24,15 @@ def _said(act: Act) -> str:
         ("She pats him without hugging him.", ["a pat b", "a not hug b"]),
         ("The boy is hugged by the girl.", ["b hug a"]),
         ("He gives her a hug.", ["a hug b"]),
-        ("mum hugs kid", ["a hug b"]),
         ("He starts hugging her.", ["a hug b"]),
-        ("An old man pats a boy on the shoulder.", ["a pat b"]),
         ("I hug you.", ["a hug b"]),
         ("The first person hugs the second person.", ["a hug b"]),
         ("He huggs her.", ["a hug b"]),
-        ("He combs her hair.", ["a groom b"]),
-        ("She puts her hand on his head.", ["a hand-on b"]),
         ("He helps her walk.", ["a support b"]),
         ("grab her by the wrist", ["a hold-hands b"]),
         ("He yawns and stretches.", ["a yawn", "a stretch"]),
         ("Two friends bow and drink.", ["ab bow", "ab drink"]),
         ("Neither of them jumps.", ["ab not jump"]),
-        ("The soldier salutes.", ["a salute b"]),
         ("He begs on his knees.", ["a beg b", "a kneel"]),
         ("He takes her hand and kisses it.", ["a hold-hands b", "a kiss-hand b"]),
         ("A stranger bumps into a boy who pushes him.", ["a bump-into b", "b push a"]),

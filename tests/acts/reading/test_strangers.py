@@ -65,7 +65,6 @@ from tests.acts.reading.reading import told
         ("The one on the left waves, and the one on the right bows.", [("wave", "a", "b"), ("bow", "b", None)]),
         # what the two do to each other's hands, to things, and with one's own body
         ("They clap hands with each other.", [("clap-each-other", "ab", None)]),
-        ("A touches the left wrist.", [("touch-own", "a", None)]),
         ("A taps B and touches the left wrist.", [("pat", "a", "b"), ("touch-own", "a", None)]),
         ("a person grabs something with both hands", [("grab-thing", "a", None)]),
         ("a person moves objects on a shelf", [("move-thing", "a", None)]),
@@ -103,8 +102,6 @@ from tests.acts.reading.reading import told
             "a person moves his hand in a circular motion and lets it fall",
             [("circle-arms", "a", None), ("lower-arm", "a", None)],
         ),
-        # the last of a list, behind "each other"
-        ("They walk up to each other and hug.", [("walk-up", "ab", None), ("hug", "ab", None)]),
         # both do what two people do
         ("Two people do jumping jacks.", [("jumping-jacks", "ab", None)]),
         # an object that the parser hangs on the verb before
@@ -151,6 +148,15 @@ from tests.acts.reading.reading import told
         # names are no misspelt verbs, and a letter before "is" is one
         ("Tom pushes Leah.", [("push", "a", "b")]),
         ("A is kneeling.", [("kneel", "a", None)]),
+        # together, and not past each other
+        ("Two men stagger along the road.", [("stagger-together", "ab", None)]),
+        ("A nurse helps a man get up and walks with him.", [("help-up", "a", "b"), ("walk-together", "a", "b")]),
+        ("A nurse walks with her patient arm in arm.", [("walk-hand-in-hand", "a", "b")]),
+        ("She opens her arms and he runs into them.", [("arms-out", "a", None), ("hug", "b", "a")]),
+        # verbs that the parser takes for nouns, or nouns for verbs
+        ("Wave, bow and leave.", [("wave", "ab", None), ("bow", "ab", None), ("walk-away", "ab", None)]),
+        ("One does ten jumping jacks while the other bows.", [("jumping-jacks", "a", None), ("bow", "b", None)]),
+        ("He looks left and right for her.", [("look-around", "a", "b")]),
         # two steps through WordNet lead anywhere: "tucks" to opening something, "lands" to following
         ("He tucks the letter into his pocket.", []),
     ],
@@ -164,11 +170,6 @@ def only(text: str) -> Act:
     return act
 
 
-def test_a_hand_may_be_left_out() -> None:
-    reach, mirrored = read("A reaches out with the left arm; B mirrors her with the right.").acts
-    assert (reach.side, mirrored.side) == ("left", "right")
-
-
 def test_an_answer_follows_what_is_only_tried() -> None:
     _, ducks = read("A pretends to throw a ball and B ducks.").acts
     assert [(relation.kind, relation.act) for relation in ducks.order] == [("after", "1")]
@@ -180,7 +181,7 @@ def test_a_noun_is_not_forced_to_be_a_verb() -> None:
 
 
 def test_a_repeated_act_is_done_with_the_same_side_or_the_one_that_is_named() -> None:
-    for words, side in (("does the same", "left"), ("mirrors it with the right", "right")):
+    for words, side in (("does the same", "left"), ("mirrors her with the right", "right")):
         first, again = read(f"A raises the left arm and B {words}.").acts
         assert (first.side, again.side) == ("left", side)
 
