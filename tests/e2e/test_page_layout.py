@@ -143,5 +143,6 @@ def test_the_button_and_the_whole_stage_are_in_view_together_on_a_small_laptop(p
         for part in (f"button#{prefix}generate", f"#{prefix}player .pdd"):
             box = page.locator(part).bounding_box()
             assert box and box["y"] >= 0 and box["y"] + box["height"] <= 700, part
+        assert page.evaluate("[...document.querySelectorAll('.pdd')].every((e) => !((e.scrollLeft = 9), e.scrollLeft))")
         player = page.locator(f"#{prefix}player .pdd").bounding_box()
         assert player and player["width"] > 600 and player["height"] > 600
