@@ -3,7 +3,7 @@
 A rule is a condition of :mod:`motion.metrics.sentences` in which these names stand for an act's own values: ``who`` is
 its agent and ``whom`` the other; ``side`` and ``way`` are "any" and ``part`` (of the body) is "body" where the words
 name none; ``n`` is how often, 1 where they do not say, ``several`` likewise 2, and ``times(…, n)`` asks for no
-more where they do; ``metres`` is how far apart.
+more where they do; ``metres`` is how far apart, and ``held`` the share of the time that two fifths of a beat are.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ NO_RULE = "nothing measures it"
 
 _OF_THE_CLOCK = {"clockwise": "right", "counterclockwise": "left"}
 """Directions as seen from above, and those that a rule asks for."""
-UNSAID: Mapping[str, str | float] = {"side": "any", "part": "body", "way": "any", "n": 1, "several": 2, "metres": 1.2}
+UNSAID: dict[str, Any] = {"side": "any", "part": "body", "way": "any", "n": 1, "several": 2, "metres": 1.2, "held": 0.4}
 """What a rule asks for where the words say nothing: ``metres`` is how far apart at least."""
 
 
@@ -105,9 +105,10 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
         return Verdict(act.id, act.act, _words(act, entry), None, why, quoted, wrote)
     assert entry is not None
     asked: dict[str, list[str]] = {}
+    held = round(max(UNSAID["held"] / len(plan.beats()), motion.fps / motion.frames), 2)
     unchecked: dict[str, None] = {}
     for who in act.agents:
-        asked[who] = rules_of(act, entry, who)
+        asked[who] = rules_of(act, entry, who, held=held)
         mask = next((mask for rule in asked[who] for mask in masks(rule)[:1]), "")
         for kind, rule in qualifiers(act, entry, who, mask, plan.text(act.words) if act.words else ""):
             asked[who] += [rule] if rule else []
@@ -251,14 +252,14 @@ def _seen(act: Act, known: Lexicon) -> list[str]:
 
 
 # ---- rules -----------------------------------------------------------------------------------------------
-def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
-    """The rules of an act with its own values in the place of their names, for one of its agents."""
+def rules_of(act: Act, entry: Entry, who: str, **said: str | float) -> list[str]:
+    """The rules of an act with its own values in the place of their names, for one of its agents, and what is said."""
     whom = other_of(who)
     part = body_part(act) or "body"
     part = f"{act.part_side} {part}" if act.part_side and has_sides(part) else part
     way = _OF_THE_CLOCK.get(act.direction or "", act.direction)
     way = way if way in ("forward", "back", "left", "right") else "any"
-    said: dict[str, str | float] = {"side": act.side or "any", "part": part, "way": way}
+    said |= {"side": act.side or "any", "part": part, "way": way}
     said |= {"n": act.times, "several": act.times} if act.times else {}
     said |= {"metres": 0.7 * act.distance} if act.distance else {}
     return [cast(rule, who, whom, counted=bool(act.times), **said) for rule in entry.rule]

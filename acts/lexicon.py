@@ -42,8 +42,8 @@ Does = Literal["", _Passed, _Held, _Stands]
 """What is done with a thing: the values that an entry's ``thing`` may have."""
 SEATS = ("chair", "bench", "bed")
 """Kinds of things on which people sit."""
-Prop = Literal["", "ball", "book", "cup", "guitar", "phone", "ring", "stick", "sword"]
-"""Kinds of things that go without saying: the values that an entry's ``prop`` may have."""
+Prop = Literal["", "ball", "book", "cup", "guitar", "phone", "ring", "rope", "stick", "sword"]
+"""Things that go without saying, of which only a rope has no shape: the values that an entry's ``prop`` may have."""
 
 
 class Entry(BaseModel):
@@ -226,10 +226,10 @@ _WORD = re.compile(r"[a-z]+(?:'s)?")
 
 
 @lru_cache(maxsize=1)
-def _tables() -> tuple[dict[str, str], frozenset[str], frozenset[str]]:
+def _tables() -> tuple[dict[str, str], dict[str, frozenset[str]]]:
     tables = tomllib.loads(NOUNS.read_text(encoding="utf-8"))
     kinds = {noun: kind for kind, nouns in tables["nouns"].items() for noun in nouns}
-    return kinds, frozenset(tables["places"]["floor"]), frozenset(tables["like"]["nouns"])
+    return kinds, {name: frozenset(nouns) for name, nouns in tables["lists"].items()}
 
 
 def kind_of(noun: str) -> str:
@@ -243,19 +243,14 @@ def nouns_in(text: str) -> list[tuple[str, str]]:
     return [(word, kinds[word]) for word in map(_singular, _WORD.findall(text.lower())) if word in kinds]
 
 
-def on_floor(text: str) -> bool:
-    """True if a text names the floor or something like it."""
-    return any(_singular(word) in _tables()[1] for word in _WORD.findall(text.lower()))
-
-
 def is_fixture(noun: str | None) -> bool:
     """True for a noun of what stands where it is, such as a window, so that people go to it and face it."""
     return bool(noun) and kind_of(noun or "") in FIXTURES
 
 
-def is_stand_in(noun: str) -> bool:
-    """True for a noun whose thing is drawn as another one that is only like it, such as a tray as a book."""
-    return _singular(noun) in _tables()[2]
+def is_listed(text: str, name: str) -> bool:
+    """True if a text has a noun of a list of ``nouns.toml``, such as the "floor" or something like it."""
+    return any(_singular(word) in _tables()[1][name] for word in _WORD.findall(text.lower()))
 
 
 def thing_of(act: Act, words: str) -> tuple[str, str]:
@@ -272,9 +267,10 @@ def thing_of(act: Act, words: str) -> tuple[str, str]:
 
 
 def _singular(word: str) -> str:
-    kinds, floor, _ = _tables()
+    kinds, lists = _tables()
+    known = kinds.keys() | frozenset[str]().union(*lists.values())
     word = word.removesuffix("'s")
     for end, instead in (("", ""), ("ves", "fe"), ("ies", "y"), ("es", ""), ("s", "")):
-        if word.endswith(end) and (bare := word[: len(word) - len(end)] + instead) in kinds.keys() | floor:
+        if word.endswith(end) and (bare := word[: len(word) - len(end)] + instead) in known:
             return bare
     return word

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from typing import get_args
 
 from acts import shapes
 from acts.lexicon import Entry, Lexicon, is_fixture
@@ -28,16 +29,9 @@ _HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture", "jump"))
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
 """Shapes that take the other along."""
 _PARTS: Mapping[str, shapes.Part] = {
-    "head": "head",
-    "shoulder": "shoulder",
-    "back": "back",
-    "chest": "chest",
+    **{part: part for part in get_args(shapes.Part) if part},
     "waist": "chest",
-    "arm": "arm",
-    "hand": "hand",
-    "leg": "leg",
     "knee": "leg",
-    "foot": "foot",
 }
 """Families of parts of the body, and the part of each that hands are led to from the front."""
 Done = Sequence[tuple[Act, Entry]]

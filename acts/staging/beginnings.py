@@ -16,7 +16,7 @@ from acts.plan import Act, other_of
 from motion import FPS, SMPL22
 from motion.vectors import Array
 
-from .floor import ABREAST, BEHIND, CLOSE, LINKED
+from .floor import ABREAST, BEHIND, CLOSE, CREEPS, LINKED
 from .holds import TWIRL
 from .lifts import takes_hold
 from .places import Standing, Way2D, eased
@@ -92,6 +92,8 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     if "back to back" in ways:
         return _back_to_back(upright)
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
+    if "past" in ways and ways["past"].speed <= CREEPS:
+        gap = min(gap, max(0.55 * seconds * ways["past"].speed, 1.2))
     gap = next((ways[way].near for way in ("hold", "spar") if way in ways), gap)
     for way in ("to", "behind", "beside"):
         if way in ways:

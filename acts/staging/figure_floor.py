@@ -6,7 +6,9 @@ them carries it.
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
@@ -18,24 +20,9 @@ from motion.smoothing import minimum_jerk
 from motion.transforms import facing, heading_matrix
 from motion.vectors import Array
 
-from .poses import BOTH_SIDES, JOINT, SOLE, STANCE, TOES, Turns, about, poses_of
+from .poses import BOTH_SIDES, JOINT, STANCE, TOES, Turns, about, poses_of
 
-_CLEAR = {
-    "foot": SOLE,
-    "ankle": 0.07,
-    "knee": 0.045,
-    "hip": 0.1,
-    "wrist": 0.055,
-    "elbow": 0.045,
-    "shoulder": 0.08,
-    "collar": 0.08,
-    "pelvis": 0.11,
-    "spine1": 0.11,
-    "spine2": 0.12,
-    "spine3": 0.12,
-    "neck": 0.07,
-    "head": 0.11,
-}
+_CLEAR = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))["skin"]
 """Metres from a joint to the skin below it, on which a body lies or stands."""
 _CLEARANCES = np.array([_CLEAR[name.split("_")[-1]] for name in JOINT])
 _CROWN, _OVER_CROWN = 0.14, 0.02

@@ -36,6 +36,8 @@ ACROSS = 1.3
 """Metres that somebody walks to a thing, for which they turn from the other."""
 BACKWARDS = 0.9
 """Metres of a step back, at most."""
+CREEPS = 0.8
+"""Metres a second up to which somebody creeps, limps or crawls, who has not as far to go."""
 RUN = 1.6
 """Metres a second from which somebody runs, who gets up their speed within a step."""
 SIDESTEP = 0.8
@@ -46,6 +48,8 @@ WIDE = 0.9
 """Radius in metres of a walk around the other, at least."""
 SEAT = 0.4
 """Metres from where somebody stands back to the middle of the seat on which they sit down."""
+_HALF_ROUND = 1.15 * math.pi
+"""Radians that somebody gets round the other at least, however slowly they walk."""
 FARTHEST = 5.0
 """Metres apart to which people walk; the training scenes hold next to nothing beyond."""
 _CHASED = 7.0
@@ -230,7 +234,7 @@ def _past(move: Move, track: Track, other: Array, to: Array, seconds: float) -> 
         way = min(max(seconds - 0.4, 0.5) * move.speed, FARTHEST)
         track.walk(np.stack([here, here + way * ahead]), seconds)
         return
-    beyond = max(1.3, min(gap, seconds * move.speed - gap)) + move.metres
+    beyond = max(1.3 if move.speed > CREEPS else 0.7, min(gap, seconds * move.speed - gap)) + move.metres
     aside = ASIDE * np.array([to[1], -to[0]])
     line = np.stack([here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside])
     facing = bearing(-to) if move.backwards else None
@@ -267,7 +271,10 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     wanted = 2 * math.pi * move.turns * (1.1 if move.turns >= 1 else 1.5)
     end_radius = max(radius, WIDE / 2 if both else WIDE)
     speed = max(move.speed, 1.6) if move.speed > 0.9 else move.speed  # once around within the usual five seconds
-    wanted = min(wanted, speed * max(seconds - 0.4, 0.5) / max((radius + end_radius) / 2, 0.4))
+    way = speed * max(seconds - 0.4, 0.5)
+    if way < min(wanted, _HALF_ROUND) * radius:  # nearer to the other, so that a slow walk gets round them
+        end_radius = max(way / _HALF_ROUND, NEAR_BY)
+    wanted = min(wanted, way / max((radius + end_radius) / 2 if end_radius > radius else end_radius, 0.4))
     angles = start + move.sense * np.linspace(0, wanted, 60)
     radii = radius + (end_radius - radius) * np.clip(np.linspace(0, 5, 60), 0, 1)
     line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)

@@ -49,8 +49,8 @@ class Stroke:
         sinks: the hand sinks again before the beat ends; others are held as long as it lasts.
         in_time: two people make it in one time.
         at_other: it is at the other's body.
-        on: "head" or "trunk": the part of one's own body that the hand is on. The network is held to it there, and of
-            somebody on their way to the head as well; other gestures are a draft.
+        on: "head", "trunk" or "hands": the part of one's own body that the hand is on. The network is held to it
+            there, and of somebody on their way to the head as well; other gestures are a draft.
     """
 
     at: Place = (0.0, 0.0, 0.0)

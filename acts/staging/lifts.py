@@ -20,7 +20,7 @@ from motion.transforms import heading_matrix
 from motion.vectors import Array
 
 from .gestures import hands_of, wrist
-from .places import Course, Way2D, eased
+from .places import Course, Way2D, direction, eased
 from .poses import JOINT, LOWER, TRUNK, all_but, upright
 from .recordings import carried
 from .score import Lift
@@ -29,7 +29,7 @@ from .window import OFTEN, KnownFrames, Stretch
 RISES = 16
 """Frames that picking a person up takes, and setting them down."""
 LONG = 75
-"""Frames: after a longer lift the person is set down again before the beat ends."""
+"""Frames: after a longer lift the person is set down again before the beat ends, where they are not carried on."""
 WAITS = 12
 """Frames for which a person stands before they are picked up, where that is what comes first."""
 LADEN = 11
@@ -76,15 +76,14 @@ class Carrying:
     @property
     def off(self) -> tuple[int, int]:
         """The first frame of the beat at which the feet are off the floor, and the one after the last."""
-        frames = self.stretch.frames
-        if not self.stretch.start and not self.lift.comes and self.lift.carry != "up":
-            return 0, frames
-        own, other = (self.stretch.course(person) for person in (0, 1))
-        apart = np.linalg.norm(own.places - other.places, axis=1)
-        near = self._meets(apart)
-        waits = 0 if self.stretch.start else max(WAITS - near, 0)
-        first = min(near + waits + RISES if apart[near] < takes_hold(self.lift.carry) + _FAR else frames, frames)
-        down = self.lift.carry == "up" and frames - first > LONG
+        frames, first = self.stretch.frames, 0
+        if self.stretch.start or self.lift.comes or self.lift.carry == "up":
+            own, other = (self.stretch.course(person) for person in (0, 1))
+            apart = np.linalg.norm(own.places - other.places, axis=1)
+            near = self._meets(apart)
+            waits = 0 if self.stretch.start else max(WAITS - near, 0)
+            first = min(near + waits + RISES if apart[near] < takes_hold(self.lift.carry) + _FAR else frames, frames)
+        down = (self.lift.carry == "up" or self.lift.down) and frames - first > LONG
         return first, frames - 2 * RISES if down else frames
 
     def _meets(self, apart: Array) -> int:
@@ -183,7 +182,7 @@ class Carrying:
                 yield frame, upright(stand.places[other], float(stand.headings[other]))
         if last < frames:
             own = self.course
-            angle = float(own.headings[-1])
-            place = own.places[-1] + takes_hold(self.lift.carry) * np.array([np.sin(angle), np.cos(angle)])
+            angle, back = float(own.headings[-1]), self.lift.carry == "back"  # from which somebody slides down behind
+            place = own.places[-1] + takes_hold(self.lift.carry) * direction(angle + np.pi * back)
             for frame in range(frames - RISES, frames, OFTEN):
-                yield frame, upright(place, angle + np.pi)
+                yield frame, upright(place, angle if back else angle + np.pi)

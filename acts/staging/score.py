@@ -128,10 +128,12 @@ class Lift(shapes.Lift):
     Attributes:
         carrier: the one who lifts the other.
         comes: the one who walks up to the other first; "" for nobody.
+        down: they are set down at its end, before something else is done.
     """
 
     carrier: str
     comes: str = ""
+    down: bool = False
 
 
 @dataclass(frozen=True)
@@ -261,6 +263,13 @@ def as_story(scores: Sequence[Score]) -> tuple[Score, ...]:
             continue
         if turned and not score.changes and not goes(score.moves):
             scores[i] = replace(score, touch=touch.model_copy(update={"behind": True}))
+    for i, (score, then) in enumerate(pairwise(scores)):
+        if score.lift is not None and score.lift.carry != "drags" and then.lift is None:
+            scores[i] = replace(score, lift=score.lift.model_copy(update={"down": True}))
+        elif then.touch is not None and then.touch.behind and not then.moves:  # they come from there
+            comes = ((move, move.way == "to" and move.person == then.touch.person) for move in score.moves)
+            moves = (replace(move, way="behind", near=0.0) if behind else move for move, behind in comes)
+            scores[i] = replace(score, moves=tuple(moves))
     for i, (score, then) in enumerate(pairwise(scores)):  # to sit down at the end of a way, they turn round there
         sits = [who for who, listed in then.changes.items() if listed[0].posture == "sits" and not listed[0].already]
         there = [move for move in score.moves if move.person in sits and move.way in _TO_SEATS]

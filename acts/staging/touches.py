@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from motion import FPS
-from motion.transforms import heading, mirrored
+from motion.transforms import facing, mirrored
 from motion.vectors import Array, unit
 
 from .places import Course
@@ -38,6 +38,11 @@ _PALM = 0.05
 """Metres by which a wrist is further from the spine, so that the palm and not the wrist is on the back."""
 _KISS = 0.22
 """Metres between two heads at a kiss."""
+_ROUND: Mapping[str, tuple[float, float, float]] = {"waist": (0.12, -0.02, 0.02), "head": (0.05, 0.1, 0.02)}
+"""Metres ahead of the other's joint, aside and over it, of the wrists of arms that go round them from behind, so that
+the palms are before the belly or the eyes."""
+_CLOSE = 0.36
+"""Metres between the pelvises of two people one of whom has the arms round the other like that."""
 _ARM = 0.45
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
 _TRUNK = 0.47
@@ -105,10 +110,15 @@ def reach(touch: Touch, pose: Array) -> float:
     ahead, up = _TRUNK * np.sin(angle), _HIP + _TRUNK * np.cos(angle)
     if not touch.sides:
         return float(ahead + 0.08 + _KISS)
-    if touch.part == "waist":
-        return 0.36
+    if _goes_round(touch):
+        return _CLOSE
     arm = float(np.sqrt(max(_ARM**2 - (up - height) ** 2, 0.1**2)))
     return float(min(ahead + arm, 0.55)) + _SKIN
+
+
+def _goes_round(touch: Touch) -> bool:
+    """True for both arms around somebody from behind: a hug, or hands before the eyes."""
+    return touch.part == "waist" or (touch.part == "head" and touch.behind and len(touch.sides) == 2)
 
 
 def lean(touch: Touch, pose: Array) -> float:
@@ -144,7 +154,7 @@ def touched(touch: Touch, other: Array, own: Array) -> Array:
     """
     joints = _joints(touch.part, touch.part_side)
     back = other[JOINT["spine3"]]
-    if touch.part == "back" and float((own[0] - other[0]) @ _facing(other)) > 0:
+    if touch.part == "back" and float((own[0] - other[0]) @ facing(other)) > 0:
         joints = _joints("shoulder")  # as far as an arm gets round somebody from the front
     if not touch.sides:
         return other[joints[0]] + _KISS * unit(own[JOINT["head"]] - other[joints[0]])[None]
@@ -156,9 +166,10 @@ def touched(touch: Touch, other: Array, own: Array) -> Array:
             continue
         joint = min(joints, key=lambda j: float(np.linalg.norm(other[j] - shoulder)))
         place = other[joint] + _SKIN * unit(shoulder - other[joint])
-        if touch.part == "waist":  # the arms go round
+        if _goes_round(touch):
+            ahead, aside, up = _ROUND[touch.part]
             across = unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
-            place = other[joint] + 0.12 * _facing(other) - 0.02 * across + np.array([0.0, 0.02, 0.0])
+            place = other[joint] + ahead * facing(other) + aside * across + np.array([0.0, up, 0.0])
         elif len(joints) == 1 and len(touch.sides) == 2:
             place = place + 0.08 * unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
         if touch.part == "back" and len(joints) == 1:
@@ -186,12 +197,7 @@ def _around(other: Array, shoulder: Array) -> Array:
     far, near = sorted(
         (other[JOINT[f"{side}_shoulder"]] for side in SIDES), key=lambda joint: -float(np.linalg.norm(joint - shoulder))
     )
-    return np.asarray(far + inside * unit(near - far) - behind * _facing(other) - [0.0, under, 0.0])
-
-
-def _facing(pose: Array) -> Array:
-    angle = float(heading(np.asarray(pose)[None])[0])
-    return np.array([np.sin(angle), 0.0, np.cos(angle)])
+    return np.asarray(far + inside * unit(near - far) - behind * facing(other) - [0.0, under, 0.0])
 
 
 def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> KnownFrames | None:

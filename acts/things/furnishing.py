@@ -7,6 +7,7 @@ Fingers take shape by what hands touch, by the acts of the plan, and by what the
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
@@ -16,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acts.checking import Verdict, decided, rules_of
-from acts.lexicon import is_stand_in, kind_of, lexicon
+from acts.lexicon import NOUNS, is_fixture, is_listed, kind_of, lexicon
 from acts.plan import Act, Plan, PlanFrames
 from motion import SMPL22, Duet
 from motion.hands import MOST_GRIPS, SIDES, Grip
@@ -74,10 +75,26 @@ def furnish(duet: Duet, plans: Sequence[PlanFrames], lengths: Sequence[float] = 
     return replace(duet, things=tuple(thing for thing, _ in rows), manifest=manifest)
 
 
-def stand_ins(rows: Sequence[Row]) -> tuple[str, ...]:
-    """A sentence on the things that are drawn as others, of the rows of a manifest; none where all are as named."""
-    said = dict.fromkeys(f"the {row['name']} as a {row['kind']}" for row in rows if is_stand_in(row["name"]))
-    return (f"Drawn as something like it: {', '.join(said)}.",) if said else ()
+def drawn_otherwise(rows: Sequence[Row], plans: Sequence[PlanFrames] = ()) -> tuple[str, ...]:
+    """A sentence each on the things that are drawn as others, and on those that plans name and that are not drawn.
+
+    Args:
+        rows: of a manifest.
+        plans: of what people do.
+    """
+    known, drawn = lexicon().entries, {word for row in rows for word in (row["name"], row["kind"])}
+    acts = (act for plan, *_ in plans for act in plan.acts if act.happens and act.act in known)
+    nouns = (act.thing or known[act.act].prop for act in acts)
+    named = [noun for noun in nouns if (kind_of(noun) or is_listed(noun, "shapeless")) and not is_fixture(noun)]
+    said = {
+        "Drawn as something like it": [
+            f"{row['name']} as a {row['kind']}" for row in rows if is_listed(row["name"], "like")
+        ],
+        "Not drawn": [noun for noun in named if drawn.isdisjoint((noun, kind_of(noun)))],
+    }
+    return tuple(
+        f"{head}: {', '.join(f'the {each}' for each in dict.fromkeys(own))}." for head, own in said.items() if own
+    )
 
 
 def _is_same(one: Thing, other: Thing) -> bool:
@@ -100,16 +117,7 @@ _BOTH = frozenset(("clap", "pray", "push", "hands-on-hips", "rub-hands", "surren
 _STARTS = [SMPL22.index(name) for name in ("pelvis", "spine2", "left_shoulder", "left_shoulder", "right_shoulder")]
 _ENDS = [SMPL22.index(name) for name in ("spine2", "neck", "right_shoulder", "left_elbow", "right_elbow")]
 """What palms are laid on, as lines between joints."""
-_HELD = {
-    "sword": ("fist", "fist"),
-    "stick": ("fist", "fist"),
-    "umbrella": ("fist", "fist"),
-    "bag": ("fist", "fist"),
-    "flower": ("pinch", "pinch"),
-    "ring": ("pinch", "pinch"),
-    "guitar": ("grasp", "pinch"),
-    "cup": ("grasp", "grasp"),
-}
+_HELD = tomllib.loads(NOUNS.read_text(encoding="utf-8"))["held"]
 """Shapes of the left and the right hand by the kind of the thing they hold; others are clasped."""
 
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from acts import Act, Plan, lexicon
-from acts.lexicon import SEATS, Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
+from acts.lexicon import SEATS, Does, is_fixture, is_listed, kind_of, nouns_in, thing_of
 from acts.staging.strikes import BOUTS
 from motion.things import HELD
 
@@ -132,7 +132,7 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
         if act.patient and all(shape.who == "patient" for shape in sits):
             agents = ("ab".index(act.patient),)  # whom the agent seats
         place = place or "table" * (kind_of(act.thing or "") == "table")
-        if on_floor(words) and not place:
+        if is_listed(words, "floor") and not place:
             return None
         seats = [noun for noun in nouns_in(f"{words} {act.thing or ''}") if noun[1] in SEATS]
         name, kind = seats[0] if seats else ("chair", "")

@@ -12,7 +12,7 @@ from acts.staging.places import Standing
 from acts.staging.score import Move, Score, Touch
 from motion import FPS, SMPL22
 from motion.metrics.quality import jerk_percentile
-from motion.transforms import heading
+from motion.transforms import facing, heading
 from webdemo.inference import Engine
 from webdemo.inference.method import WEIGHTS
 
@@ -50,10 +50,10 @@ def test_a_head_is_laid_on_the_shoulder_of_the_one_beside(engine: Engine, before
     gap = nearest(found, 0, ["head"], ["left_shoulder", "right_shoulder"])
     assert gap.min() < 0.25
     rests = int(gap.argmin())
-    facing = [np.array([np.sin(angle), np.cos(angle)]) for angle in heading(found[:, rests])]
-    assert facing[0] @ facing[1] > 0.7, "they look the same way"
+    ahead, theirs = facing(found[:, rests])
+    assert ahead @ theirs > 0.7, "they look the same way"
     lean = found[0, rests, SMPL22.index("neck")] - found[0, rests, 0]
-    assert abs(lean[[0, 2]] @ facing[0]) < 0.2, "to the side, not forward"
+    assert abs(lean @ ahead) < 0.2, "to the side, not forward"
 
 
 def test_a_pat_is_given_twice(engine: Engine) -> None:
@@ -67,8 +67,7 @@ def test_a_pat_is_given_twice(engine: Engine) -> None:
 def test_who_is_tapped_and_turns_round_is_tapped_first(engine: Engine) -> None:
     found = made(engine, "Person A is tapped on the back by person B and turns around.")
     gap = nearest(found, 1, ["right_wrist"], ["left_shoulder", "right_shoulder", "spine3"])
-    across = found[0, :, SMPL22.index("left_hip")] - found[0, :, SMPL22.index("right_hip")]
-    angle = np.unwrap(np.arctan2(across[:, 0], across[:, 2]))
+    angle = np.unwrap(heading(found[0]))
     turned = np.abs(angle - angle[0]) > 1.0
     assert turned[-1] and gap[: int(np.flatnonzero(turned)[0])].min() < 0.25
 
@@ -94,9 +93,7 @@ def test_those_in_a_hold_have_their_hands_joined_while_they_turn(engine: Engine,
 def test_a_touch_of_the_back_or_from_behind_comes_from_there(engine: Engine, prompt: str) -> None:
     found = made(engine, prompt, seconds=8.0 if "Then" in prompt else 4.0)
     gap = nearest(found, 0, ["left_wrist", "right_wrist"], ["left_shoulder", "right_shoulder", "spine3"])
-    across = found[1, :, SMPL22.index("left_hip")] - found[1, :, SMPL22.index("right_hip")]
-    ahead = np.cross(across, [0.0, 1.0, 0.0])
-    behind = np.sum((found[0, :, 0] - found[1, :, 0]) * ahead, axis=1) < 0
+    behind = np.sum((found[0, :, 0] - found[1, :, 0]) * facing(found[1]), axis=1) < 0
     assert gap[behind].min() < 0.3, "a hand may come near on the way round them as well"
 
 
@@ -127,9 +124,7 @@ def test_a_hand_that_is_offered_stays_out_and_nobody_takes_it(engine: Engine) ->
 )
 def test_people_begin_and_stay_where_the_words_put_them(engine: Engine, prompt: str, same: bool) -> None:
     found = made(engine, prompt)
-    across = found[:, :, SMPL22.index("left_hip")] - found[:, :, SMPL22.index("right_hip")]
-    facing = np.cross(across, [0.0, 1.0, 0.0])
-    alike = np.einsum("ti,ti->t", facing[0], facing[1])[29::30]
+    alike = np.einsum("ti,ti->t", *facing(found))[29::30]
     assert (alike > 0).all() if same else (alike < 0).all()
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.metrics.interaction import palms
 from motion.transforms import facing
-from motion.vectors import FLAT, Array, runs
+from motion.vectors import FLAT, Array, runs, square_frame
 
 _SMOOTH = 0.15
 """Seconds: standard deviation of the filter over root paths and headings, which takes out a step's sway."""
@@ -120,6 +120,12 @@ class Motion:
         """(T, 2) unit vectors over the floor to a person's left."""
         x, z = self.forward[who].T
         return np.stack([z, -x], axis=-1)
+
+    def of_trunk(self, who: int, vectors: Array) -> Array:
+        """Vectors (…, T, 3) in the frame of a person's trunk: to their left, up along it, and ahead."""
+        left = np.insert(self.left(who), 1, 0.0, axis=-1)
+        frame = square_frame(self.joint(who, "neck") - self.joint(who, "pelvis"), left)
+        return np.einsum("...ti,tij->...tj", vectors, frame)
 
     def limbs(self, who: int, *, mirrored: bool = False) -> Array:
         """(T, 8, 3) m/s of wrists, elbows, knees and ankles in the body's own frame (left, up, ahead).

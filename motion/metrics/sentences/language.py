@@ -161,9 +161,11 @@ def _lack(node: ast.Call, motion: Motion) -> str:
     if len(calls) > 1:
         return "all of it is seen, but not in this order"
     least = _value(node.args[1], motion) if len(node.args) > 1 else {"mostly": 0.6}.get(name, SHORTEST)
-    least *= motion.frames / motion.fps if name == "mostly" else 1.0
+    lasts = longest(seen[0], motion.fps)
+    if name == "mostly":
+        least, lasts = least * motion.frames / motion.fps, seen[0].sum() / motion.fps
     when = {"start": "not at the start", "end": "not at the end"}.get(name, f"{least:.1f} s needed")
-    return f"{figure} for {longest(seen[0], motion.fps):.2f} s, {when}".strip()
+    return f"{figure} for {lasts:.2f} s, {when}".strip()
 
 
 def _needed(node: ast.Call, motion: Motion) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 
 from .joints import PREDICATES, Motion
 from .paths import WALK
+from .touches import NEARBY
 
 
 def _by_name(table: dict[str, str]) -> dict[str, str]:
@@ -27,13 +28,7 @@ AT_MOST, AT_LEAST, INSTEAD = (_by_name(_TABLES[kind]) for kind in ("at_most", "a
 """What is said of predicates by their names, and the predicates by which others are measured."""
 _WAYS = {"any": "", "left": "to the left", "right": "to the right", "towards": "towards the other"}
 """The way of a lean in words, where it is not its own."""
-_RANGES = {
-    "degrees": (0.0, 720.0, "°"),
-    "share": (0.0, 1.5, " %"),
-    "speed": (0.0, 12.0, " m/s"),
-    "over": (-2.0, 2.0, " m"),
-    "below": (-2.0, 2.0, " m"),
-}
+_RANGES = _TABLES["ranges"]
 """The least and the largest value of a limit, by its name, and its unit."""
 _METRES = (0.0, 16.0, " m")
 """Those of every other limit."""
@@ -67,6 +62,8 @@ def figure(name: str, m: Motion, *values: Any, **named: Any) -> tuple[str, str]:
     for _ in range(14):
         middle = (easy + hard) / 2
         easy, hard = (middle, hard) if holds(middle) else (easy, middle)
+    if limit == "gap" and abs(easy - NEARBY) < 0.01:
+        return "", ""  # a hand is near, and elsewhere on the body
     who, way = asked.get("who", 0), asked.get("way", "")
     said, needed = (_over(each) if limit == "over" else _said(each, unit) for each in (easy, asked[limit]))
     if said == needed:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy  # its parts are loaded with their first use
 
-from .joints import SIDES, Array, Mask, Motion, keep, predicate
+from .joints import SIDES, Array, Mask, Motion, flat, keep, predicate
 
 
 # ---- the body's height -----------------------------------------------------------------------------------
@@ -30,9 +30,11 @@ def sits(m: Motion, who: int) -> Mask:
 
 @predicate
 def kneels(m: Motion, who: int) -> Mask:
-    """A knee on the floor, the pelvis low, the head over it."""
-    knees = m.pair(who, "knee")[..., 1].min(axis=0)
-    return (knees < 0.2) & (m.height(who) < 0.82) & (m.joint(who, "head")[:, 1] > 0.6)
+    """A knee on the floor and no further behind the hips than in a kneel, the pelvis low, the head over it."""
+    knees = m.pair(who, "knee")
+    behind = flat(m.joint(who, "pelvis") - knees, m.forward[who])
+    down = ((knees[..., 1] < 0.16) & (behind < 0.2)).any(axis=0)
+    return down & (m.height(who) < 0.82) & (m.joint(who, "head")[:, 1] > 0.6)
 
 
 @predicate
@@ -197,20 +199,6 @@ def _still(m: Motion, who: int) -> Mask:
 def _held_before_other(m: Motion, who: int, hand: Mask) -> Mask:
     ready = (m.speeds[who] < 0.25) & (m.off(who) < 50) & (m.distance < 2.0)
     return keep(hand & ready, m.fps, lambda i, j: j - i >= 0.4 * m.fps, pause=0.1)
-
-
-@predicate
-def beckons(m: Motion, who: int) -> Mask:
-    """A hand above the waist goes to and fro twice or more, by 6 cm or more, in a wave or a beckoning."""
-    over_waist = m.pair(who, "wrist")[..., 1] > m.joint(who, "pelvis")[:, 1] + 0.15
-    mask = np.zeros(m.frames, dtype=bool)
-    for path, ready in zip(m.pair(who, "wrist") - m.pair(who, "shoulder"), over_waist, strict=True):
-
-        def strokes(i: int, j: int, path: Array = path) -> bool:
-            return max(len(scipy.signal.find_peaks(axis, prominence=0.06)[0]) for axis in path[i:j].T) >= 2
-
-        mask |= keep(ready, m.fps, strokes)
-    return mask
 
 
 @predicate

@@ -17,6 +17,12 @@ def hand_over_head(m: Motion, who: int, side: str = "any") -> Mask:
 
 
 @predicate
+def hand_beyond_head(m: Motion, who: int) -> Mask:
+    """A wrist is beyond the head, along the trunk: an arm is stretched out, of somebody who lies as well."""
+    return (m.of_trunk(who, m.pair(who, "wrist") - m.joint(who, "head"))[..., 1] > 0.0).any(axis=0)
+
+
+@predicate
 def hand_near_floor(m: Motion, who: int, metres: float = 0.45) -> Mask:
     """A wrist is less than ``metres`` above the floor while the person does not lie flat on it."""
     flat = (m.joint(who, "head")[:, 1] < 0.35) & (m.height(who) < 0.45)
@@ -229,15 +235,21 @@ def beats(m: Motion, who: int, side: str = "any", strokes: int = 3, metres: floa
 
 
 @predicate
-def palms_strike(m: Motion, who: int, metres: float = 0.2, opens: float = 0.05) -> Mask:
-    """The palms of one person strike each other: within ``metres``, and ``opens`` more apart just before and after."""
+def beckons(m: Motion, who: int) -> Mask:
+    """A hand above the waist goes to and fro, by 6 cm or more, in a wave or a beckoning."""
+    return beats(m, who, "any", 3, 0.06, -0.35)
+
+
+@predicate
+def palms_strike(m: Motion, who: int, metres: float = 0.2, opens: float = 0.08) -> Mask:
+    """The palms strike each other above the waist: within ``metres``, and ``opens`` more apart before and after."""
     left, right = m.palms[who]
     gap = np.linalg.norm(left - right, axis=-1)
-    mask = np.zeros(m.frames, dtype=bool)
+    high = m.pair(who, "wrist")[..., 1].min(axis=0) > m.joint(who, "pelvis")[:, 1] + 0.1
+    mask, reach = np.zeros(m.frames, dtype=bool), round(0.4 * m.fps)
     for peak in scipy.signal.find_peaks(-gap, prominence=opens)[0]:
-        reach = round(0.5 * m.fps)
         around = gap[max(0, peak - reach) : peak], gap[peak + 1 : peak + reach + 1]
-        if gap[peak] < metres and all(part.size and part.max() > gap[peak] + opens for part in around):
+        if gap[peak] < metres and high[peak] and all(part.size and part.max() > gap[peak] + opens for part in around):
             mask[max(0, peak - 1) : peak + 2] = True
     return mask
 

@@ -2,41 +2,23 @@
 
 from __future__ import annotations
 
+import tomllib
+from pathlib import Path
+
 import numpy as np
 import scipy  # its parts are loaded with their first use
 
-from .joints import SIDES, Array, Mask, Motion, flat, keep, predicate
+from .joints import SIDES, Array, Mask, Motion, keep, predicate
 from .paths import beside
 
-_SPINE = ("spine1", "spine2", "spine3")
-
-
-def _sides(*parts: str) -> tuple[str, ...]:
-    return tuple(f"{side}_{part}" for part in parts for side in SIDES)
-
-
-_TRUNK = ("pelvis", *_SPINE, "neck", *_sides("collar", "shoulder"))
+_TABLES = tomllib.loads(Path(__file__).with_name("body.toml").read_text(encoding="utf-8"))
 BODY = {
-    "shoulder": _sides("shoulder", "collar"),
-    "back": _TRUNK[1:],
-    "torso": _TRUNK[1:],
-    "trunk": _TRUNK,
-    "chest": ("spine2", "spine3", *_sides("collar")),
-    "head": ("head", "neck"),
-    "face": ("head",),
-    "breast": ("spine3", *_sides("collar")),
-    "hand": _sides("wrist"),
-    "arm": _sides("elbow", "wrist"),
-    "elbow": _sides("elbow"),
-    "wrist": _sides("wrist"),
-    "hip": _sides("hip"),
-    "waist": ("pelvis", "spine1", *_sides("hip")),
-    "knee": _sides("knee"),
-    "leg": _sides("hip", "knee", "ankle"),
-    "foot": _sides("foot", "ankle"),
-    "body": (*_TRUNK, "head", *_sides("elbow", "wrist", "hip", "knee")),
+    part: tuple(dict.fromkeys(name.replace("*", side) for name in names.split() for side in SIDES))
+    for part, names in _TABLES["joints"].items()
 }
 """Joints by the words for a part of the body."""
+NEARBY = 0.5
+"""Metres, at least, as which the distance of a hand counts that is elsewhere on the body."""
 
 
 # ---- touches ---------------------------------------------------------------------------------------------
@@ -91,35 +73,42 @@ def has_sides(part: str) -> bool:
 
 
 def to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
-    """(P, T) least distance of points (P, T, 3) to a person's joints of a part, such as "arm" or "left arm"."""
+    """(P, T) least distance of points (P, T, 3) to a person's joints of a part, such as "arm" or "left arm".
+
+    A point that is not where the part is on the body, such as one behind the face, counts as :data:`NEARBY` from it.
+    """
     side, _, name = part.rpartition(" ")
     sided = [joint for joint in BODY[name] if side and joint.startswith(side)]
     joints = np.stack([m.joint(who, joint) for joint in sided or BODY[name]])
-    return np.linalg.norm(points[:, None] - joints[None], axis=-1).min(axis=1)
+    gaps = np.linalg.norm(points[:, None] - joints[None], axis=-1).min(axis=1)
+    there = m.of_trunk(who, points - np.mean([m.joint(who, joint) for joint in BODY[name]], axis=0))
+    left, up, ahead = np.moveaxis(there, -1, 0)
+    along = {"aside": np.abs(left), "up": up, "ahead": ahead, "behind": -ahead}
+    for axis, least in _TABLES["where"].get(name, {}).items():
+        gaps = np.where(along[axis] < least, np.maximum(gaps, NEARBY), gaps)
+    return gaps
 
 
 @predicate
-def hand_on(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_JOINT) -> Mask:
-    """A hand (wrist or palm) is on a part of the other's body; "both": each hand is.
+def hand_on(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_JOINT, whose: int | None = None) -> Mask:
+    """A hand (wrist or palm) is on the other's ``part``; "both": each hand is.
 
-    On "left foot" it is within ``gap`` metres and nearer to the left one than to the right one; on the "back" it is not
-    before the chest.
+    On "left foot" it is within ``gap`` metres and nearer to the left one than to the right one. With ``whose`` it is on
+    that person's body.
     """
     if side == "both":
-        return hand_on(m, who, part, "left", gap) & hand_on(m, who, part, "right", gap)
-    gaps = to_joints(m, m.hands(who, side), 1 - who, part)
+        return hand_on(m, who, part, "left", gap, whose) & hand_on(m, who, part, "right", gap, whose)
+    hands, whose = m.hands(who, side), 1 - who if whose is None else whose
+    gaps = to_joints(m, hands, whose, part)
     if part.startswith(SIDES):
         named, _, name = part.partition(" ")
-        gaps[gaps >= to_joints(m, m.hands(who, side), 1 - who, f"{SIDES[1 - SIDES.index(named)]} {name}")] = np.inf
-    if part.endswith("back"):
-        ahead = flat(m.hands(who, side) - m.joint(1 - who, "spine3"), m.forward[1 - who])
-        gaps[ahead > 0.05] = np.inf
+        gaps[gaps >= to_joints(m, hands, whose, f"{SIDES[1 - SIDES.index(named)]} {name}")] = np.inf
     return gaps.min(axis=0) < gap
 
 
 @predicate
 def both_hands_on(m: Motion, who: int, part: str, gap: float = 0.22) -> Mask:
-    """Both hands are on a part of the other's body."""
+    """Both hands are on the other's ``part``."""
     return hand_on(m, who, part, "both", gap)
 
 
@@ -131,17 +120,15 @@ def foot_on(m: Motion, who: int, part: str, gap: float = ON_JOINT) -> Mask:
 
 @predicate
 def hand_to_own(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_JOINT) -> Mask:
-    """A hand is on a part of the person's own body; "both": each hand is."""
-    if side == "both":
-        return hand_to_own(m, who, part, "left", gap) & hand_to_own(m, who, part, "right", gap)
-    return to_joints(m, m.hands(who, side), who, part).min(axis=0) < gap
+    """A hand is on the person's own ``part``; "both": each hand is."""
+    return hand_on(m, who, part, side, gap, who)
 
 
 @predicate
 def hugs(m: Motion, gap: float = 0.55) -> Mask:
-    """Chest near chest, and a hand of each on the other's trunk."""
+    """Chest near chest, and a hand of each on the other's back."""
     chests = np.linalg.norm(m.joint(0, "spine3") - m.joint(1, "spine3"), axis=-1)
-    return (chests < gap) & hand_on(m, 0, "torso", gap=0.25) & hand_on(m, 1, "torso", gap=0.25)
+    return (chests < gap) & hand_on(m, 0, "back", gap=0.25) & hand_on(m, 1, "back", gap=0.25)
 
 
 @predicate

@@ -11,7 +11,7 @@ from acts.staging.score import Touch
 from acts.staging.touches import beside, kneels, lean, middle, reach, touched, touching
 from motion import SMPL22
 
-from .staged_words import contact
+from .staged_words import score
 
 ORIGIN = np.zeros(2)
 
@@ -33,14 +33,14 @@ ORIGIN = np.zeros(2)
     ],
 )
 def test_contacts_are_read(sentence: str, found: tuple[str, str, int, int] | None) -> None:
-    touch = contact(sentence)
+    touch = score(sentence).touch
     assert (touch and (touch.person, touch.part, len(touch.sides), touch.times)) == found
 
 
 def test_a_named_hand_touches_and_a_touch_may_come_late() -> None:
-    touch = contact("Person A taps person B on the shoulder with the left hand.")
+    touch = score("Person A taps person B on the shoulder with the left hand.").touch
     assert touch is not None and touch.sides == ("left",) and not touch.late
-    late = contact("They argue until person A pats person B on the head.")
+    late = score("They argue until person A pats person B on the head.").touch
     assert late is not None and late.late
 
 
@@ -78,13 +78,18 @@ def test_nobody_kneels_to_touch_a_person_on_their_feet_above_the_knee() -> None:
     assert beside(upright(ORIGIN, 0.0), np.ones(2)) is None
 
 
-def test_arms_go_round_who_is_hugged_from_behind() -> None:
-    touch = contact("Person A hugs person B from behind.")
+def test_arms_go_round_who_is_hugged_or_blinded_from_behind() -> None:
+    touch = score("Person A hugs person B from behind.").touch
     assert touch is not None and touch.behind
     other = upright(ORIGIN, 0.0)
     own = upright(np.array([0.0, -reach(touch, other)]), 0.0)
     for wrist in touched(touch, other, own):
         assert wrist[2] > other[SMPL22.index("spine2"), 2] and abs(wrist[0]) < 0.1, "before the chest"
+    touch = score("A covers B's eyes.").touch
+    assert touch is not None and touch.behind
+    own = upright(np.array([0.0, -reach(touch, other)]), 0.0)
+    for wrist in touched(touch, other, own) - other[SMPL22.index("head")]:
+        assert 0.02 < wrist[2] < 0.12 and 0.05 < abs(wrist[0]) < 0.15, "at the temples, the palms before the eyes"
 
 
 def test_who_reaches_down_leans_forward_and_who_reaches_up_does_not() -> None:

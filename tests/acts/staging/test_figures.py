@@ -67,6 +67,14 @@ def test_a_handstand_has_the_feet_over_the_hands() -> None:
     assert np.linalg.norm(across[:, [0, 2]], axis=1).mean() < 0.25
 
 
+def test_a_dive_goes_to_the_right_or_left_with_the_arms_stretched_out() -> None:
+    for name, sign in (("right", -1), ("left", 1)):
+        poses = made("dives", mirrored=name == "left") * [sign, 1, 1]
+        lies = poses[poses[:, HANDS, 0].max(axis=1).argmax()]
+        assert lies[0, 0] > 0.7 and lies[J["head"], 0] > lies[0, 0] + 0.4
+        assert (lies[HANDS, 0] > lies[J["head"], 0] + 0.2).all()
+
+
 def test_push_ups_go_down_and_up_over_hands_that_stay() -> None:
     poses = made("push-ups")
     down = (poses[:, HANDS, 1] < 0.075).all(axis=1)

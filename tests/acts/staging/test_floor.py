@@ -14,14 +14,14 @@ from acts.staging.score import Move
 from acts.staging.stage import scores_of
 from motion import FPS
 
-from .staged_words import hold, moves
+from .staged_words import score
 
 FACING = Standing(np.array([[0.0, 0.0], [0.0, 1.2]]), np.array([0.0, math.pi]))
 BEHIND_B = Standing(np.array([[0.0, 0.0], [0.0, 3.0]]), np.zeros(2))
 
 
 def ways(sentence: str, seconds: float = 4.0, standing: Standing | None = None) -> tuple[Standing, dict[int, Way2D]]:
-    found = moves(sentence)
+    found = score(sentence).moves
     begin = starting(found, seconds) if standing is None else standing
     planned = plan(found, begin, round(seconds * FPS), first=standing is None)
     return begin, {way.person: way for way in planned}
@@ -73,9 +73,17 @@ def test_who_walks_past_keeps_clear_and_gets_beyond() -> None:
     assert found[0].places[-1, 1] > begin.places[1, 1] + 1.0
 
 
-@pytest.mark.parametrize(("words", "degrees"), [("walks once all the way around", 330)])
-def test_who_walks_around_goes_around(words: str, degrees: float) -> None:
-    begin, found = ways(f"Person A {words} person B.", seconds=8.0)
+def test_who_sneaks_past_goes_slowly_and_gets_beyond() -> None:
+    begin, found = ways("A sneaks past B.")
+    steps = np.linalg.norm(np.diff(found[0].places, axis=0), axis=1) / np.diff(found[0].frames) * FPS
+    assert steps.max() < 0.8 and found[0].places[-1, 1] > begin.places[1, 1] + 0.5
+
+
+@pytest.mark.parametrize(
+    ("words", "seconds", "degrees"), [("walks once all the way around", 8.0, 330), ("slowly walks around", 5.0, 190)]
+)
+def test_who_walks_around_goes_around(words: str, seconds: float, degrees: float) -> None:
+    begin, found = ways(f"Person A {words} person B.", seconds)
     line = found[0].places - begin.places[1]
     turned = np.degrees(np.unwrap(np.arctan2(line[:, 0], line[:, 1])))
     assert abs(turned[-1] - turned[0]) >= degrees
@@ -193,7 +201,7 @@ def test_a_move_told_after_something_else_begins_late_but_following_does_not() -
 
 @pytest.mark.parametrize("words", ["A couple dances a waltz.", "They take each other's hands and spin around."])
 def test_those_in_a_hold_turn_about_the_middle_and_face_each_other(words: str) -> None:
-    kind = hold(words)
+    kind = score(words).hold
     assert kind
     begin, found = ways(words, 6.0)
     middle = begin.places.mean(axis=0)
@@ -226,14 +234,14 @@ def test_who_walks_backwards_before_the_other_faces_them() -> None:
     ],
 )
 def test_a_first_beat_begins_where_its_move_can(sentence: str, apart: list[float], headings: list[float]) -> None:
-    begin = starting(moves(sentence), 4.0)
+    begin = starting(score(sentence).moves, 4.0)
     assert begin.places[1] - begin.places[0] == pytest.approx(apart, abs=1e-3)
     assert begin.headings == pytest.approx(headings)
 
 
 def test_those_who_touch_begin_within_reach_unless_one_comes_to_the_other() -> None:
     assert REACH == starting((), 4.0, near=True).gap() < starting((), 4.0).gap()
-    assert starting(moves("They walk up to each other."), 4.0, near=True).gap() > 1.7
+    assert starting(score("They walk up to each other.").moves, 4.0, near=True).gap() > 1.7
 
 
 def test_a_turn_that_begins_late_in_a_short_beat_gives_no_place_before_it() -> None:
@@ -265,6 +273,11 @@ def test_who_comes_up_to_a_person_at_a_table_walks_round_it_to_their_side() -> N
     assert comes.way == "beside" and np.linalg.norm(way.places - table, axis=1).min() > 0.55
 
 
+def test_who_then_touches_the_other_from_behind_comes_up_from_there() -> None:
+    first, _ = scores_of(read("He creeps up and covers her eyes.").beats())
+    assert [(move.person, move.way) for move in first.moves] == [("a", "behind"), ("b", "stay")]
+
+
 def test_who_runs_away_gets_up_to_the_speed_of_a_run() -> None:
     way = plan((Move("a", "away", 2.2),), FACING, 120)[0]
     places = np.stack([np.interp(np.arange(120), way.frames, way.places[:, axis]) for axis in (0, 1)], axis=1)
@@ -282,7 +295,7 @@ def test_who_overtakes_comes_from_behind_and_ends_ahead_of_a_person_who_walks_on
     assert begin.places[0, 1] < begin.places[1, 1] - 1.0 and np.allclose(begin.headings, 0.0)
     gone = found[1].places[-1, 1] - begin.places[1, 1]
     assert gone > 1.0 and found[0].places[-1, 1] > found[1].places[-1, 1] + 0.8
-    walks = [move.way for move in moves("A walks on slowly, and B overtakes him.") if move.person == "a"]
+    walks = [move.way for move in score("A walks on slowly, and B overtakes him.").moves if move.person == "a"]
     assert walks == ["ahead"], "who is overtaken walks past nobody"
 
 

@@ -21,7 +21,7 @@ from tests.inference.followed import Follower
 from tests.inference.test_scenes import positions
 from webdemo.inference.story import Beat, SceneRequest
 
-from .staged_words import moves
+from .staged_words import score
 
 J = {name: i for i, name in enumerate(SMPL22.joint_names)}
 KNEES, HANDS, TOES, ANKLES = ([J[f"left_{joint}"], J[f"right_{joint}"]] for joint in ("knee", "wrist", "foot", "ankle"))
@@ -82,7 +82,7 @@ def test_feet_take_turns_and_stay_while_they_stand(gait: str) -> None:
 
 
 def test_who_skips_is_seen_to() -> None:
-    assert {move.gait for move in moves("They skip forward together.")} == {"skips"}
+    assert {move.gait for move in score("They skip forward together.").moves} == {"skips"}
     poses = gone("skips", 5.0)
     assert check("happens(both(walks(a, 0.6), hops(a, 0.08)))", Motion(np.stack([poses, np.add(poses, [1.0, 0, 0])])))
 
@@ -102,7 +102,7 @@ def test_who_limps_leans_over_the_leg_that_hurts() -> None:
     ("words", "gait"), [("He limps.", "limps"), ("She tiptoes out of the room.", "on tiptoe"), ("He walks away.", "")]
 )
 def test_words_name_the_gait(words: str, gait: str) -> None:
-    assert moves(words)[0].gait == gait
+    assert score(words).moves[0].gait == gait
 
 
 @pytest.mark.parametrize(
@@ -115,6 +115,6 @@ def test_words_name_the_gait(words: str, gait: str) -> None:
     ],
 )
 def test_who_crawls_gets_on(monkeypatch: pytest.MonkeyPatch, words: str, gait: str) -> None:
-    assert moves(words)[0].gait == gait
+    assert score(words).moves[0].gait == gait
     found = positions(Follower(monkeypatch).scene(SceneRequest(beats=(Beat(words, seconds=5.0),))))
     assert (found[0, :, 0, 1] < 0.6).all() and np.linalg.norm(found[0, -1, 0] - found[0, 0, 0]) > 1.0

@@ -12,7 +12,7 @@ from acts.staging.poses import upright
 from acts.staging.score import SIDES
 from motion import SMPL22
 
-from .staged_words import gestures
+from .staged_words import score
 
 AHEAD = np.tile([0.0, 0.0, 1.0], (60, 1))
 TIME = np.arange(60) / 30
@@ -34,12 +34,12 @@ TIME = np.arange(60) / 30
     ],
 )
 def test_gestures_are_read(sentence: str, found: dict[str, tuple[str, int]]) -> None:
-    assert {who: (g.gesture, len(hands_of(g))) for who, g in gestures(sentence).items()} == found
+    assert {who: (g.gesture, len(hands_of(g))) for who, g in score(sentence).gestures.items()} == found
 
 
 def test_a_named_hand_is_that_hand() -> None:
-    assert gestures("Person A waves with the left hand.")["a"].sides == "left"
-    assert gestures("Person A waves.")["a"].sides == "right"
+    assert score("Person A waves with the left hand.").gestures["a"].sides == "left"
+    assert score("Person A waves.").gestures["a"].sides == "right"
 
 
 def test_two_hands_drum_in_turn_as_often_as_said() -> None:

@@ -9,7 +9,7 @@ from acts.staging.holds import HOLDS, TWIRL, joined, raised
 from acts.staging.poses import upright
 from motion import SMPL22
 
-from .staged_words import hold, twirls
+from .staged_words import score
 
 FACING = np.array([[[0.0, 0.0]], [[0.0, 0.5]]])
 """Person a at the origin, facing +Z; person b before them."""
@@ -17,18 +17,22 @@ LEFT, RIGHT = 0, 1
 
 
 @pytest.mark.parametrize(
-    ("sentence", "found"),
+    ("sentence", "hold", "twirls"),
     [
-        ("A couple dances the tango.", "closed"),
-        ("They take each other by both hands and spin round and round.", "ring"),
-        ("They push palm against palm.", "palms"),
-        # no hold
-        ("They dance.", "couple"),
-        ("Person A dances a tango while person B watches.", ""),
+        ("A couple dances the tango.", "closed", ""),
+        ("They take each other by both hands and spin round and round.", "ring", ""),
+        ("They push palm against palm.", "palms", ""),
+        ("They dance.", "couple", ""),
+        ("Person A dances a tango while person B watches.", "", ""),
+        ("He twirls her.", "", "a"),
+        ("She spins under his arm.", "", "b"),
+        ("They twirl around.", "", ""),
+        ("He does not twirl her.", "", ""),
     ],
 )
-def test_holds_are_read(sentence: str, found: str) -> None:
-    assert hold(sentence) == found
+def test_holds_and_twirls_are_read(sentence: str, hold: str, twirls: str) -> None:
+    found = score(sentence)
+    assert (found.hold, found.twirls) == (hold, twirls)
 
 
 def test_a_leads_with_the_left_hand_and_has_the_right_on_the_partners_back() -> None:
@@ -48,19 +52,6 @@ def test_both_hands_are_joined_in_a_ring_wherever_it_has_turned_to() -> None:
         assert np.linalg.norm(hands[0, LEFT] - hands[1, RIGHT]) < 0.1
         assert np.linalg.norm(hands[0, RIGHT] - hands[1, LEFT]) < 0.1
         assert np.linalg.norm(hands[0, LEFT] - hands[0, RIGHT]) > 0.4
-
-
-@pytest.mark.parametrize(
-    ("words", "leader"),
-    [
-        ("He twirls her.", "a"),
-        ("She spins under his arm.", "b"),
-        ("They twirl around.", ""),
-        ("He does not twirl her.", ""),
-    ],
-)
-def test_twirls_are_read(words: str, leader: str) -> None:
-    assert twirls(words) == leader
 
 
 def test_the_hands_over_a_twirl_are_above_both_heads_and_in_reach_of_both() -> None:

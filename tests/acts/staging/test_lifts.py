@@ -11,7 +11,7 @@ from motion import SMPL22
 from motion.metrics.quality import limb_depth
 from motion.vectors import Array
 
-from .staged_words import beginning, lift, moves
+from .staged_words import beginning, score
 
 
 def carried(carry: str, place: Array, angle: float) -> Array:
@@ -33,8 +33,8 @@ def carried(carry: str, place: Array, angle: float) -> Array:
     ],
 )
 def test_lifts_are_read(words: str, found: Lift) -> None:
-    assert lift(words) == found
-    assert {move.person for move in moves(words)} == {"a", "b"}
+    assert score(words).lift == found
+    assert {move.person for move in score(words).moves} == {"a", "b"}
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_lifts_are_read(words: str, found: Lift) -> None:
     ],
 )
 def test_other_words_lift_nobody(words: str) -> None:
-    assert lift(words) is None
+    assert score(words).lift is None
 
 
 @pytest.mark.parametrize("carry", ["up", "arms", "back", "drags"])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.acts.staging.staged_words import gesturing, idle
+from tests.acts.staging.staged_words import score
 
 
 @pytest.mark.parametrize(
@@ -22,7 +22,7 @@ from tests.acts.staging.staged_words import gesturing, idle
     ],
 )
 def test_only_bystanders_stand_by(sentence: str, found: str) -> None:
-    assert "".join(sorted(idle(sentence))) == found
+    assert "".join(sorted(score(sentence).idle)) == found
 
 
 @pytest.mark.parametrize(
@@ -37,4 +37,4 @@ def test_only_bystanders_stand_by(sentence: str, found: str) -> None:
     ],
 )
 def test_gestures_are_given_to_who_only_stands(sentence: str, found: str) -> None:
-    assert "".join(sorted(gesturing(sentence))) == found
+    assert "".join(sorted(score(sentence).gesturing)) == found

@@ -17,7 +17,7 @@ import numpy as np
 
 from acts import Plan
 from acts.plan import PlanFrames
-from acts.things.furnishing import furnish, stand_ins
+from acts.things.furnishing import drawn_otherwise, furnish
 from motion import SMPL22, Clip, Duet, stacked_positions
 from motion.looks import SIZES, UNSAID, grown_up, looks_of, size_of
 from motion.metrics import compare
@@ -55,9 +55,8 @@ def furnished(result: Result, plans: Sequence[PlanFrames], *, given: bool = Fals
     duets = tuple(furnish(each, plans, lengths) if _is_on_bodies(each) else each for each in result.duets)
     rows = [(each.manifest or {}).get("things") if isinstance(each, Duet) else None for each in duets]
     manifest = {**result.manifest, "things": rows[0] or []} if any(rows) else result.manifest
-    return replace(
-        result, duets=duets, manifest=manifest, notes=(*result.notes, *stand_ins(manifest.get("things", ())))
-    )
+    told = drawn_otherwise(manifest.get("things", ()), plans)
+    return replace(result, duets=duets, manifest=manifest, notes=(*result.notes, *told))
 
 
 def looks_in(plans: Iterable[Plan]) -> tuple[str, str]:
