@@ -198,7 +198,7 @@ class _Planner:
         for other, formation in formed:
             if formation[0] == "canon" and both and not entry.mutual:
                 self._one_after_the_other()
-            elif formation[0] != match[0] and not (shown & {"go", "place"} and formation[0] == "form-line"):
+            elif formation[0] != match[0] and not (shown & {"go", "place"} and formation[0].startswith("form-line")):
                 self._add(number, other, *formation, beside=at_once)
         for other, posture in held(event, match, self._known, self._matcher.find):
             self._add(number, other, *posture, beside=at_once)

@@ -429,7 +429,7 @@ def thrust(both: np.ndarray, metres: float, up: float = -0.1) -> None:
         ("hip-bump", beside, 0.36, 0.4),
         ("crawl", lambda up: duet(lambda both: crawling(both, up), gap=3.0), 0.1, 0.6),
         ("form-line", beside, 1.0, 1.5),
-        ("shoulder-to-shoulder", beside, 0.5, 0.9),
+        ("form-line-close", beside, 0.5, 0.9),
         ("clap", for_a_while(clapping, 80), 0.07, 0.12),
         ("clap", for_a_while(lambda both, up: clapping(both, 0.07, up), 80), 0.15, 0.05),
         ("squats", for_a_while(squatting, 60), 0.25, 0.15),
