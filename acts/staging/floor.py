@@ -272,7 +272,7 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     end_radius = max(radius, WIDE / 2 if both else WIDE)
     speed = max(move.speed, 1.6) if move.speed > 0.9 else move.speed  # once around within the usual five seconds
     way = speed * max(seconds - 0.4, 0.5)
-    if way < min(wanted, _HALF_ROUND) * radius:  # nearer to the other, so that a slow walk gets round them
+    if speed <= CREEPS and way < min(wanted, _HALF_ROUND) * radius:  # nearer to the other, to get round them
         end_radius = max(way / _HALF_ROUND, NEAR_BY)
     wanted = min(wanted, way / max((radius + end_radius) / 2 if end_radius > radius else end_radius, 0.4))
     angles = start + move.sense * np.linspace(0, wanted, 60)

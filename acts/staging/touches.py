@@ -38,11 +38,12 @@ _PALM = 0.05
 """Metres by which a wrist is further from the spine, so that the palm and not the wrist is on the back."""
 _KISS = 0.22
 """Metres between two heads at a kiss."""
-_ROUND: Mapping[str, tuple[float, float, float]] = {"waist": (0.12, -0.02, 0.02), "head": (0.05, 0.1, 0.02)}
-"""Metres ahead of the other's joint, aside and over it, of the wrists of arms that go round them from behind, so that
-the palms are before the belly or the eyes."""
-_CLOSE = 0.36
-"""Metres between the pelvises of two people one of whom has the arms round the other like that."""
+_ROUND: Mapping[str, tuple[float, float, float, float]] = {
+    "waist": (0.36, 0.12, -0.02, 0.02),
+    "head": (0.36, 0.05, 0.1, 0.02),
+}
+"""Metres between the pelvises of two people one of whom has the arms round the other from behind, and those ahead of
+the other's joint, aside and over it, at which the wrists are: the palms are before the belly or the eyes."""
 _ARM = 0.45
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
 _TRUNK = 0.47
@@ -111,7 +112,7 @@ def reach(touch: Touch, pose: Array) -> float:
     if not touch.sides:
         return float(ahead + 0.08 + _KISS)
     if _goes_round(touch):
-        return _CLOSE
+        return _ROUND[touch.part][0]
     arm = float(np.sqrt(max(_ARM**2 - (up - height) ** 2, 0.1**2)))
     return float(min(ahead + arm, 0.55)) + _SKIN
 
@@ -167,7 +168,7 @@ def touched(touch: Touch, other: Array, own: Array) -> Array:
         joint = min(joints, key=lambda j: float(np.linalg.norm(other[j] - shoulder)))
         place = other[joint] + _SKIN * unit(shoulder - other[joint])
         if _goes_round(touch):
-            ahead, aside, up = _ROUND[touch.part]
+            _, ahead, aside, up = _ROUND[touch.part]
             across = unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
             place = other[joint] + ahead * facing(other) + aside * across + np.array([0.0, up, 0.0])
         elif len(joints) == 1 and len(touch.sides) == 2:
