@@ -38,10 +38,7 @@ _PALM = 0.05
 """Metres by which a wrist is further from the spine, so that the palm and not the wrist is on the back."""
 _KISS = 0.22
 """Metres between two heads at a kiss."""
-_ROUND: Mapping[str, tuple[float, float, float, float]] = {
-    "waist": (0.36, 0.12, -0.02, 0.02),
-    "head": (0.36, 0.05, 0.1, 0.02),
-}
+_ROUND = {"waist": (0.36, 0.12, -0.02, 0.02), "head": (0.36, 0.05, 0.1, 0.02)}
 """Metres between the pelvises of two people one of whom has the arms round the other from behind, and those ahead of
 the other's joint, aside and over it, at which the wrists are: the palms are before the belly or the eyes."""
 _ARM = 0.45
