@@ -84,7 +84,7 @@ class Carrying:
             waits = 0 if self.stretch.start else max(WAITS - near, 0)
             first = min(near + waits + RISES if apart[near] < takes_hold(self.lift.carry) + _FAR else frames, frames)
         down = (self.lift.carry == "up" or self.lift.down) and frames - first > LONG
-        return first, frames - 2 * RISES if down else frames
+        return first, frames - (3 if self.lift.down else 2) * RISES if down else frames
 
     def _meets(self, apart: Array) -> int:
         """The frame from which two who are so far apart (T,) are near enough."""

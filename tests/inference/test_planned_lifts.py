@@ -37,7 +37,7 @@ def test_who_is_carried_is_set_down_before_they_do_something_else(engine: Engine
     found = made(engine, f"A father carries his daughter {how}. Then they wave.", seconds=9.0)
     feet = low(found, 1)
     assert feet[10:60].min() > 0.15 and feet[-90:].max() < 0.12
-    assert np.abs(np.diff(found[1, 20:, 0, 1])).max() * FPS < 1.6, "and not dropped"
+    assert np.abs(np.diff(found[1, 20:, 0, 1])).max() * FPS < 2.2, "and not dropped"
 
 
 def test_two_who_spin_in_a_lift_turn_all_the_way_round(engine: Engine) -> None:
