@@ -267,8 +267,8 @@ def as_story(scores: Sequence[Score]) -> tuple[Score, ...]:
         if score.lift is not None and score.lift.carry != "drags" and then.lift is None:
             scores[i] = replace(score, lift=score.lift.model_copy(update={"down": True}))
         elif then.touch is not None and then.touch.behind and not then.moves:  # they come from there
-            comes = ((move, move.way == "to" and move.person == then.touch.person) for move in score.moves)
-            moves = (replace(move, way="behind", near=0.0) if behind else move for move, behind in comes)
+            walks_up = (then.touch.person, "to")
+            moves = (replace(m, way="behind", near=0.0) if (m.person, m.way) == walks_up else m for m in score.moves)
             scores[i] = replace(score, moves=tuple(moves))
     for i, (score, then) in enumerate(pairwise(scores)):  # to sit down at the end of a way, they turn round there
         sits = [who for who, listed in then.changes.items() if listed[0].posture == "sits" and not listed[0].already]

@@ -19,7 +19,7 @@ def hand_over_head(m: Motion, who: int, side: str = "any") -> Mask:
 @predicate
 def hand_beyond_head(m: Motion, who: int) -> Mask:
     """A wrist is beyond the head, along the trunk: an arm is stretched out, of somebody who lies as well."""
-    return (m.of_trunk(who, m.pair(who, "wrist") - m.joint(who, "head"))[..., 1] > 0.0).any(axis=0)
+    return np.any(m.of_trunk(who, m.pair(who, "wrist") - m.joint(who, "head"))[..., 1] > 0.0, axis=0)
 
 
 @predicate
