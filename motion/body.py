@@ -23,7 +23,7 @@ from .kinematics import swing_of_units
 from .looks import LOOKS
 from .skeleton import SMPL22
 from .smoothing import smoothstep
-from .vectors import Array, rotation_vectors, rotations_by, square_frame, unit
+from .vectors import Array, rotation_vectors, rotations_by, square_frame, square_to, unit
 
 FOLDER = Path(__file__).resolve().parents[1] / "static" / "bodies"
 _J = {name: index for index, name in enumerate(SMPL22.joint_names)}
@@ -311,6 +311,5 @@ def _hinge_twist(first: Array, second: Array, hinge: Array, span: tuple[float, f
 
 def _angle_about(axis: Array, first: Array, second: Array) -> Array:
     """(T,) signed angle about unit ``axis`` from ``first`` to ``second``, each (T, 3)."""
-    first = first - np.sum(first * axis, axis=-1, keepdims=True) * axis
-    second = second - np.sum(second * axis, axis=-1, keepdims=True) * axis
+    first, second = square_to(first, axis), square_to(second, axis)
     return np.arctan2(np.sum(axis * np.cross(first, second), axis=-1), np.sum(first * second, axis=-1))

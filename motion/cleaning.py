@@ -7,13 +7,12 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .limbs import heel_raised, limb_length, sink, solve_two_bones, steadied
+from .representation import CONTACT_HEIGHTS
 from .skeleton import FEET, LEGS
 from .smoothing import REACH, begun_before, frames_from, led, smoothstep
 from .transforms import facing
-from .vectors import Array, runs
+from .vectors import Array, runs, unit
 
-# Heights below which a joint can stand on the floor, as in InterGen's contact features (metres).
-ANKLE_HEIGHT, TOE_HEIGHT = 0.12, 0.05
 # How much faster and higher than a standing joint must be one that has left the floor.
 _LOOSE = 1.5
 # A foot that drifts further than this within one contact was stepping or turning, not standing (metres).
@@ -43,12 +42,11 @@ def foot_contacts(positions: Array, fps: float, *, speed: float = 0.4) -> NDArra
         (T, 4) bool: left ankle, left toe, right ankle, right toe.
     """
     feet = positions[:, list(FEET)]
-    heights = np.array([ANKLE_HEIGHT, TOE_HEIGHT] * 2)
     if len(feet) < 2:
-        return feet[..., 1] < heights
+        return np.asarray(feet[..., 1] < CONTACT_HEIGHTS)
     velocity = np.linalg.norm(np.gradient(feet, axis=0), axis=-1) * fps
-    certain = (velocity < speed) & (feet[..., 1] < heights)
-    possible = (velocity < _LOOSE * speed) & (feet[..., 1] < _LOOSE * heights)
+    certain = (velocity < speed) & (feet[..., 1] < CONTACT_HEIGHTS)
+    possible = (velocity < _LOOSE * speed) & (feet[..., 1] < _LOOSE * CONTACT_HEIGHTS)
     in_time = np.ones((3, 1))
     standing = scipy.ndimage.binary_propagation(certain, in_time, mask=possible)
     standing = np.pad(standing, ((2, 2), (0, 0)), mode="edge")
@@ -138,10 +136,8 @@ def _foot_goals(
     for place, floor in ((new_toe, 0.0), (new_ankle, _REST_ANKLE[0])):
         lift = np.maximum(floor - place[:, 1], 0.0)
         place[:, 1] += begun_before(lift, blend, 0.75 * blend) * (1 - _fade(held, blend)[:, 0]) if held.any() else lift
-    bone = new_ankle - new_toe
-    bone *= foot_length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
     # The toe's place wins where both stand: a heel may lift, a toe must not glide.
-    return new_toe + bone, new_toe
+    return new_toe + unit(new_ankle - new_toe) * foot_length, new_toe
 
 
 def _pins(

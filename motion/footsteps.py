@@ -22,7 +22,7 @@ from .limbs import solve_two_bones
 from .skeleton import LEGS
 from .smoothing import minimum_jerk
 from .transforms import facing
-from .vectors import Array, floor_speed, runs, wrapped
+from .vectors import FLAT, Array, floor_speed, heading_of, runs, unit, wrapped
 
 _MOVES = 0.25
 """Metres a second of a body that goes somewhere."""
@@ -99,10 +99,9 @@ def with_feet(positions: Array, places: Array) -> Array:
         bent, met = solve_two_bones(
             result[own, hip], result[own, knee], result[own, ankle], places[own, side, 0], forward[own]
         )
-        bone = places[own, side, 1] - places[own, side, 0]
         length = np.linalg.norm(feet[own, side, 1] - feet[own, side, 0], axis=-1, keepdims=True)
         result[own, knee], result[own, ankle] = bent, met
-        result[own, toe] = met + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
+        result[own, toe] = met + unit(places[own, side, 1] - places[own, side, 0]) * length
     return result
 
 
@@ -244,9 +243,9 @@ def pivoting(positions: Array, fps: float) -> Array:
 
 def _turns(positions: Array, feet: Array, forward: Array, fps: float) -> list[Turn]:
     """The turns of a body over its feet, from and, where they come there, to where these are under it."""
-    yaw = np.unwrap(_bearing(forward))
+    yaw = np.unwrap(heading_of(forward))
     apart = np.sum((feet[:, 0, 0] - feet[:, 1, 0]) * np.cross(_UP, forward), axis=-1)
-    off = np.abs(wrapped(_bearing(feet[:, :, 1] - feet[:, :, 0]) - yaw[:, None])).max(axis=1)
+    off = np.abs(wrapped(heading_of(feet[:, :, 1] - feet[:, :, 0]) - yaw[:, None])).max(axis=1)
     stands = (positions[:, 0, 1] > UPRIGHT) & (feet[:, :, 1, 1].min(axis=1) < ON_FLOOR)
     behind, under = stands & ((apart < _CROSSED) | (off > _TWISTED)), (apart > _OPEN) & (off < _ALONG)
     at_rest = under & (off < _BEGINS)
@@ -284,7 +283,7 @@ def _ends(yaw: Array) -> int:
 
 def _pivot_steps(forward: Array, turn: Turn, fps: float) -> list[Step]:
     """The steps of a turn, the last two of which end at its end."""
-    yaw = np.unwrap(_bearing(forward[turn.start : turn.stop]))
+    yaw = np.unwrap(heading_of(forward[turn.start : turn.stop]))
     frames, turned = turn.stop - turn.start, float(yaw[-1] - yaw[0])
     count = min(_wanted(turned), max(2, int(frames / (_QUICKEST_PIVOT * fps))))
     first, each = 0 if turned > 0 else 1, frames / count
@@ -313,18 +312,12 @@ def _left_standing(feet: Array, stands: Array, stop: int, fps: float) -> Array:
     """The feet (N, 2, 2, 3) from a frame on, which stay as they ``stand`` (2, 2, 3) until their own next step."""
     placed = feet[stop:].copy()
     for side in (0, 1):
-        speed = np.linalg.norm(np.gradient(feet[:, side, 1][:, [0, 2]], axis=0), axis=-1)[stop:] * fps
-        goes = speed > _LEAVES
+        goes = floor_speed(feet[:, side, 1], fps)[stop:] > _LEAVES
         leaves = int(np.argmax(goes)) if goes.any() else len(placed)
         rests = ~goes[leaves:]
         lands = leaves + max(int(np.argmax(rests)) if rests.any() else len(rests), 1)
         placed[:leaves, side] = stands[side]
         fade = 1 - minimum_jerk((np.arange(leaves, lands) - leaves + 1) / (lands - leaves))
-        shift = (stands[side] - feet[min(stop + leaves, len(feet) - 1), side]) * [1.0, 0.0, 1.0]
+        shift = (stands[side] - feet[min(stop + leaves, len(feet) - 1), side]) * FLAT
         placed[leaves:lands, side] += fade[:, None, None] * shift
     return placed
-
-
-def _bearing(line: Array) -> Array:
-    """(…) radians from +Z towards +X of directions (…, 3) as seen from above."""
-    return np.asarray(np.arctan2(line[..., 0], line[..., 2]))

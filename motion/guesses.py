@@ -15,7 +15,7 @@ from motion.skeleton import POINTS17, SKELETONS, Skeleton
 from motion.vectors import unit
 
 from .clip import Clip
-from .rigs import RigMotion, match_joints
+from .rigs import RigMotion
 from .skeleton import LAYOUTS, SMPL22
 from .vectors import Array
 
@@ -46,7 +46,7 @@ def places_of(motion: Clip | RigMotion) -> dict[str, Array]:
     if isinstance(motion, Clip):
         joints = LAYOUTS[motion.skeleton.name].joints
         return {SMPL22.joint_names[ours]: positions[:, its] for its, ours in enumerate(joints) if ours >= 0}
-    return {name: positions[:, joint] for name, joint in match_joints(motion).joints.items()}
+    return {name: positions[:, joint] for name, joint in motion.parts.joints.items()}
 
 
 def leg_length(places: Places) -> float:

@@ -118,16 +118,35 @@ def followed_rotations(positions: Array) -> Array:
 def quaternions(rotations: Array) -> Array:
     """(T, …, 4) unit quaternions x y z w of (T, …, 3, 3), of two signs the one nearer to the frame before."""
     turns = scipy.spatial.transform.Rotation.from_matrix(rotations.reshape(-1, 3, 3))
-    wxyz = np.asarray(turns.as_quat()).reshape(*rotations.shape[:-2], 4)
-    flips = np.where(np.sum(wxyz[1:] * wxyz[:-1], axis=-1) < 0, -1.0, 1.0)
-    wxyz[1:] *= np.cumprod(flips, axis=0)[..., None]
-    return wxyz
+    xyzw = np.asarray(turns.as_quat()).reshape(*rotations.shape[:-2], 4)
+    flips = np.where(np.sum(xyzw[1:] * xyzw[:-1], axis=-1) < 0, -1.0, 1.0)
+    xyzw[1:] *= np.cumprod(flips, axis=0)[..., None]
+    return xyzw
 
 
 def rotation_matrices(quaternions: Array) -> Array:
     """(…, 3, 3) rotations of quaternions (…, 4), x y z w, of any length but 0."""
     turns = scipy.spatial.transform.Rotation.from_quat(quaternions.reshape(-1, 4)).as_matrix()
     return np.asarray(turns).reshape(*quaternions.shape[:-1], 3, 3)
+
+
+def bone_vectors(positions: Array) -> Array:
+    """(…, 21, 3) the way from its parent to each joint but the root of (…, 22, 3), in the order of the joints."""
+    return np.asarray(positions[..., 1:, :] - positions[..., list(SMPL22.parents[1:]), :])
+
+
+def bone_lengths(positions: Array) -> Array:
+    """(…, 21) metres of :func:`bone_vectors`."""
+    return np.asarray(np.linalg.norm(bone_vectors(positions), axis=-1))
+
+
+def chained(root: Array, bones: Array) -> Array:
+    """(…, 22, 3) the other way round: a root (…, 3), and each bone (…, 21, 3) at the end of the one above."""
+    places = np.empty((*bones.shape[:-2], SMPL22.num_joints, 3))
+    places[..., 0, :] = root
+    for parent, joint in SMPL22.bones:
+        places[..., joint, :] = places[..., parent, :] + bones[..., joint - 1, :]
+    return places
 
 
 def project_to_skeleton(positions: Array) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ import scipy  # its parts are loaded with their first use
 from .skeleton import LEGS, SMPL22
 from .smoothing import least_jerk, smoothstep
 from .transforms import facing
-from .vectors import FLAT, Array, unit
+from .vectors import FLAT, Array, square_to, unit
 
 HIPS = [0, *(leg[0] for leg in LEGS)]
 """The pelvis and both hips."""
@@ -65,13 +65,21 @@ def solve_two_bones(
     distance = np.clip(distance, np.abs(upper - lower) + 1e-6, upper + lower - 1e-6)
     along = (distance**2 + upper**2 - lower**2) / (2 * distance)
     aside = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
-    bend = _beside(middle - root, end - root)
+    bend = square_to(middle - root, unit(end - root))
     # What the limb bends more than before goes towards the pole: the direction in which a nearly straight
     # limb bends is noise. A limb that need not bend more keeps its own.
     more = np.maximum(aside - np.linalg.norm(bend, axis=-1, keepdims=True), 0.0)
-    side = _beside(bend + more * pole, axis)
-    side = side / np.maximum(np.linalg.norm(side, axis=-1, keepdims=True), 1e-12)
+    side = unit(square_to(bend + more * pole, axis))
     return root + along * axis + aside * side, root + distance * axis
+
+
+def ankle_moved(person: Array, leg: Sequence[int], goal: Array, pole: Array, *, soft: float = 0.0) -> None:
+    """Takes an ankle of a person (…, J, 3) to a goal (…, 3), in place: the knee follows, the foot keeps its way."""
+    hip, knee, ankle, toe = leg
+    foot = person[..., toe, :] - person[..., ankle, :]
+    limb = (person[..., joint, :] for joint in (hip, knee, ankle))
+    person[..., knee, :], person[..., ankle, :] = solve_two_bones(*limb, goal, pole, soft=soft)
+    person[..., toe, :] = person[..., ankle, :] + foot
 
 
 def bent_towards(root: Array, middle: Array, end: Array, goal: Array, pole: Array) -> tuple[Array, Array]:
@@ -83,14 +91,12 @@ def bent_towards(root: Array, middle: Array, end: Array, goal: Array, pole: Arra
     )
     along = (reach**2 + upper**2 - lower**2) / (2 * reach)
     aside = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
-    return root + along * axis + aside * unit(pole - _along(pole, axis)), root + reach * axis
+    return root + along * axis + aside * unit(square_to(pole, axis)), root + reach * axis
 
 
 def across(bone: Array, line: Array) -> Array:
     """(T, 3) the unit direction of a bone across a line (T, 3); 0 where the bone lies along it."""
-    out = bone - line * np.sum(bone * line, axis=-1, keepdims=True) / np.maximum(
-        np.sum(line * line, axis=-1, keepdims=True), 1e-9
-    )
+    out = square_to(bone, unit(line))
     return np.asarray(out / np.maximum(np.linalg.norm(out, axis=-1, keepdims=True), 1e-3))
 
 
@@ -117,23 +123,21 @@ def steadied(
         hinged: the limb bends towards the pole alone, as a knee does: a joint seen on the other side is mirrored.
     """
     axis = unit(end - root)
-    along = _along(middle - root, axis)
-    aside = np.linalg.norm(middle - root - along, axis=-1, keepdims=True)
+    own, towards = square_to(middle - root, axis), square_to(pole, axis)
+    aside = np.linalg.norm(own, axis=-1, keepdims=True)
     share = np.broadcast_to(np.asarray(free, dtype=np.float64), (len(root),))[:, None]
     share = share * open_limb(root, middle, end)
-    out = guide - root - _along(guide - root, axis)
+    out = square_to(guide - root, axis)
     if hinged:
-        towards = pole - _along(pole, axis)
         out += 2 * np.maximum(-np.sum(out * towards, axis=-1, keepdims=True), 0.0) * towards
-    out = share * (out + _LEANS * (pole - _along(pole, axis))) + (1 - share) * (middle - root - along)
+    out = share * (out + _LEANS * towards) + (1 - share) * own
     length = np.linalg.norm(out, axis=-1, keepdims=True)
     side = out / np.maximum(length, 1e-9)
     sure = np.clip((length[:, 0] / _BENT) ** 2, _STRAIGHT, 1.0) * _STEADY
     side = least_jerk(side, np.where(share[:, 0] > 0, sure, 1e6))
-    side = side - _along(side, axis)
-    length = np.linalg.norm(side, axis=-1, keepdims=True)
-    steady = root + along + aside * side / np.maximum(length, 1e-9)
-    return np.where((length > 0.1) & (share > 0), steady, middle)
+    side = square_to(side, axis)
+    certain = np.linalg.norm(side, axis=-1, keepdims=True) > 0.1
+    return np.where(certain & (share > 0), middle - own + aside * unit(side), middle)
 
 
 def open_limb(root: Array, middle: Array, end: Array) -> Array:
@@ -141,16 +145,6 @@ def open_limb(root: Array, middle: Array, end: Array) -> Array:
     length = np.linalg.norm(middle - root, axis=-1) + np.linalg.norm(end - middle, axis=-1)
     reach = np.linalg.norm(end - root, axis=-1) / np.maximum(length, 1e-9)
     return smoothstep((reach - _FOLDED[0]) / (_FOLDED[1] - _FOLDED[0]))[..., None]
-
-
-def _along(vector: Array, axis: Array) -> Array:
-    return np.asarray(np.sum(vector * axis, axis=-1, keepdims=True) * axis)
-
-
-def _beside(vector: Array, line: Array) -> Array:
-    """A vector without its part along a line of any length."""
-    length2 = np.maximum(np.sum(line * line, axis=-1, keepdims=True), 1e-24)
-    return np.asarray(vector - np.sum(vector * line, axis=-1, keepdims=True) / length2 * line)
 
 
 def heel_raised(hip: Array, ankle: Array, toe: Array, leg: Array) -> Array:
@@ -170,12 +164,11 @@ def heel_raised(hip: Array, ankle: Array, toe: Array, leg: Array) -> Array:
     length, far = (np.linalg.norm(each, axis=-1, keepdims=True) for each in (foot, line))
     axis = line / np.maximum(far, 1e-9)
     along = np.clip((length**2 + far**2 - leg**2) / np.maximum(2 * far, 1e-9), -length, length)
-    out = unit(foot - np.sum(foot * axis, axis=-1, keepdims=True) * axis)
+    out = unit(square_to(foot, axis))
     raised = toe + along * axis + np.sqrt(np.maximum(length**2 - along**2, 0.0)) * out
     ahead = np.sum((hip - ankle) * unit((toe - ankle) * FLAT), axis=-1, keepdims=True)
-    turned = toe + (ankle - toe) + short * smoothstep(ahead / _BEHIND) * (raised - ankle)
-    bone = turned - toe
-    return np.asarray(toe + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9))
+    turned = ankle + short * smoothstep(ahead / _BEHIND) * (raised - ankle)
+    return np.asarray(toe + unit(turned - toe) * length)
 
 
 def over_planted_feet(own: Array, moved: Array) -> Array:

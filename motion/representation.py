@@ -12,14 +12,15 @@ import numpy as np
 from .kinematics import fit_rotations
 from .skeleton import FEET
 from .transforms import heading_matrix
-from .vectors import Array, unit
+from .vectors import FLAT, Array, square_to, unit
 
 NUM_FEATURES = 262
 POSITIONS, VELOCITIES = slice(0, 66), slice(66, 132)
 ROTATIONS, CONTACTS = slice(132, 258), slice(258, 262)
-CONTACT_SQUARED_SPEED = 0.001
+CONTACT_SQUARED_STEP = 0.001
 CONTACT_HEIGHTS = np.array([0.12, 0.05, 0.12, 0.05])
-"""Left ankle, left toe, right ankle, right toe: squared metres a frame, and metres."""
+"""Squared metres from frame to frame, and metres of left ankle, left toe, right ankle and right toe, of feet that can
+stand on the floor."""
 
 # The released data is Z-up.
 _Z_UP_TO_Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
@@ -60,7 +61,7 @@ def contact_labels(positions: Array) -> Array:
     """(T − 1, 4) 1.0 where an ankle or toe of (T, 22, 3) moves < √0.001 m to the next frame and is low."""
     feet = positions[:, list(FEET)]
     moved = np.sum(np.diff(feet, axis=0) ** 2, axis=-1)
-    return ((moved < CONTACT_SQUARED_SPEED) & (feet[:-1, :, 1] < CONTACT_HEIGHTS)).astype(np.float64)
+    return ((moved < CONTACT_SQUARED_STEP) & (feet[:-1, :, 1] < CONTACT_HEIGHTS)).astype(np.float64)
 
 
 def decode_positions(features: Array) -> Array:
@@ -93,11 +94,11 @@ def decode_humanml3d(features: Array) -> Array:
     half = np.concatenate([[0.0], np.cumsum(features[:-1, 0])])  # a quaternion's angle
     turns = heading_matrix(-2 * half)
     root = np.zeros((len(features), 3))
-    steps = features[:-1, [1, 3, 2]] * [1.0, 0.0, 1.0]
+    steps = features[:-1, [1, 3, 2]] * FLAT
     root[1:] = np.cumsum(np.einsum("tij,tj->ti", turns[1:], steps), axis=0)
     root[:, 1] = features[:, 3]
     local = features[:, 4:67].reshape(-1, 21, 3)
-    joints = local @ np.swapaxes(turns, -1, -2) + root[:, None] * [1.0, 0.0, 1.0]
+    joints = local @ np.swapaxes(turns, -1, -2) + root[:, None] * FLAT
     return np.concatenate([root[:, None], joints], axis=1)
 
 
@@ -110,6 +111,5 @@ def from_6d(numbers: Array) -> Array:
     """(…, 3, 3) rotations from (…, 6) by Gram–Schmidt (Zhou et al. 2019, eq. 15)."""
     first, second = numbers[..., :3], numbers[..., 3:]
     x = unit(first)
-    y = second - np.sum(x * second, axis=-1, keepdims=True) * x
-    y = unit(y)
+    y = unit(square_to(second, x))
     return np.stack([x, y, np.cross(x, y)], axis=-1)

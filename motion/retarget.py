@@ -20,10 +20,10 @@ from .errors import InputError
 from .guesses import Places, axis_of, find_up, leg_length, places_of, turn_of
 from .ik import body_scale, fit_skeleton
 from .kinematics import project_to_skeleton
-from .rigs import BodyParts, RigMotion, match_joints
+from .rigs import BodyParts, RigMotion
 from .skeleton import SMPL22
 from .transforms import resample
-from .vectors import Array, square_frame, unit
+from .vectors import FLAT, Array, square_frame, unit
 
 _J = {name: index for index, name in enumerate(SMPL22.joint_names)}
 _NO_BODY = 1e-3
@@ -126,8 +126,8 @@ def in_metres(rigs: Sequence[RigMotion]) -> tuple[RigMotion, ...]:
 
     Its unit is the one of :data:`UNITS` in which the first one's legs are a person's, or what makes them so.
     """
-    unit = unit_of(places_of(rigs[0]))
-    scale = UNITS[unit] if unit else leg_scale(rigs[0])
+    name = unit_of(places_of(rigs[0]))
+    scale = UNITS[name] if name else leg_scale(rigs[0])
     for rig in rigs:
         rig.positions[:] *= scale
     return tuple(replace(rig, offsets=scale * rig.offsets, metres_per_unit=scale) for rig in rigs)
@@ -141,9 +141,8 @@ def unit_of(places: Places) -> str:
 
 def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:
     """(T, 22, 3) Y-up positions on SMPL22's bones at the new frame rate; the floor is the file's, scaled."""
-    parts = match_joints(rig)
-    source = _bodies(rig.positions, rig, parts, turn_of(up_axis(rig)))
-    positions = _transfer(source, _standing_rest(rig, parts), scale)
+    source = _bodies(rig.positions, rig.parts, turn_of(up_axis(rig)))
+    positions = _transfer(source, _standing_rest(rig), scale)
     if rig.fps == fps:
         return positions
     # A spline between frames bends bones by fractions of a millimetre; rotations set them right.
@@ -178,13 +177,13 @@ def up_axis(*rigs: RigMotion) -> str:
 
 def rest_axis(rig: RigMotion) -> str:
     """The axis along which a rig's rest pose stands; empty for one that does not stand."""
-    rest = _bodies(rig.rest_positions()[None], rig, match_joints(rig), np.eye(3))
+    rest = _bodies(rig.rest_positions()[None], rig.parts, np.eye(3))
     tall = np.mean([rest["neck"] - rest[f"{side}_ankle"] for side in ("left", "right")], axis=(0, 1))
     stands = np.abs(tall).max() > max(_STRAIGHT * np.linalg.norm(tall), _TALL * leg_length(rest))
     return axis_of(tall) if stands else ""
 
 
-def _bodies(positions: Array, rig: RigMotion, parts: BodyParts, upright: Array) -> dict[str, Array]:
+def _bodies(positions: Array, parts: BodyParts, upright: Array) -> dict[str, Array]:
     """(T, 3) of every part the rig has, turned ``upright`` (3, 3), by SMPL22's names.
 
     ``spine0``… are the joints of its spine.
@@ -198,17 +197,17 @@ def _bodies(positions: Array, rig: RigMotion, parts: BodyParts, upright: Array) 
     return bodies
 
 
-def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
+def _standing_rest(rig: RigMotion) -> dict[str, Array] | None:
     """The rig's rest pose (1 frame), Y up and facing +Z, or ``None`` where it is not a standing one."""
     rest = rig.rest_positions()[None]
-    bodies = _bodies(rest, rig, parts, np.eye(3))
+    bodies = _bodies(rest, rig.parts, np.eye(3))
     ankles = (bodies["left_ankle"] + bodies["right_ankle"]) / 2
     tall = (bodies["neck"] - ankles)[0]
     straight = np.abs(tall).max() > 0.97 * np.linalg.norm(tall) and np.linalg.norm(tall) > 0.7
     across = (bodies["left_hip"] - bodies["right_hip"])[0]
     if not straight or np.linalg.norm(across) < 0.05:
         return None
-    bodies = _bodies(rest, rig, parts, turn_of(axis_of(tall)))
+    bodies = _bodies(rest, rig.parts, turn_of(axis_of(tall)))
     frame = square_frame(np.array([[0.0, 1.0, 0.0]]), bodies["left_hip"] - bodies["right_hip"])[0]
     bodies = {name: place @ frame for name, place in bodies.items()}
     legs_down = all(
@@ -298,8 +297,7 @@ def _level_feet(result: Array, source: dict[str, Array], rest: dict[str, Array] 
             slow = speed <= np.quantile(speed[low], 0.5)
             flat = np.median(pitch[low & slow])
         correction = np.clip(_FLAT_FOOT - flat, -0.5, 0.5)
-        horizontal = bone * np.array([1.0, 0.0, 1.0])
-        horizontal = unit(horizontal)
+        horizontal = unit(bone * FLAT)
         length = np.linalg.norm(bone, axis=-1, keepdims=True)
         new_pitch = (pitch + correction)[:, None]
         down = np.array([0.0, -1.0, 0.0])

@@ -61,6 +61,11 @@ class RigMotion(Tree):
         return len(self.positions)
 
     @cached_property
+    def parts(self) -> BodyParts:
+        """The parts of its body; raises InputError as :func:`match_joints`."""
+        return match_joints(self)
+
+    @cached_property
     def bone_lengths(self) -> Array:
         """(J,) median length of the bone that ends in each joint in metres, 0 for roots."""
         return np.array(
@@ -108,6 +113,8 @@ _BELOW = {"elbow": "wrist", "shoulder": "elbow", "collar": "shoulder", "knee": "
 _LIMB = ("wrist", "elbow", "shoulder", "collar", "ankle", "foot", "knee", "hip")
 _ONE_PLACE = 1e-3
 """Share of a body's height within which the left and the right of a part are helpers at one place."""
+_LOOKED_AT = 50
+"""So many frames, spread over the motion, tell which are."""
 _REQUIRED = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 
 
@@ -148,12 +155,15 @@ def _helpers(rig: RigMotion, keys: list[Key]) -> frozenset[int]:
     for joint, key in enumerate(keys):
         by_key.setdefault(key, []).append(joint)
     near = _ONE_PLACE * float(np.ptp(rig.positions[0], axis=0).max())
+    some = np.unique(np.linspace(0, rig.num_frames - 1, _LOOKED_AT).astype(int))
+    places = rig.positions[some]
     helpers: set[int] = set()
     for (side, part), joints in by_key.items():
-        for one in joints if side == "left" else ():
-            for other in by_key.get(("right", part), ()):
-                if np.linalg.norm(rig.positions[:, one] - rig.positions[:, other], axis=-1).max() < near:
-                    helpers |= {one, other}
+        others = np.array(by_key.get(("right", part), ()), dtype=int)
+        for one in joints if side == "left" and others.size else ():
+            apart = np.linalg.norm(places[:, [one]] - places[:, others], axis=-1).max(axis=0)
+            if (beside := others[apart < near]).size:
+                helpers.update((one, *beside.tolist()))
     return frozenset(helpers)
 
 

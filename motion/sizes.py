@@ -4,7 +4,7 @@ A child is an adult in small: all bones are shorter by one factor, so poses stay
 scene in small. Beside an adult a child walks over the same floor, with longer steps for its legs, and the adult takes
 shorter ones: the ways over the floor, and the distance between the two, shrink by the mean of both sizes. As a foot
 that stands is one point of a way, it stands afterwards too. What then no longer meets is brought together by
-:mod:`motion.sizes`.
+:func:`met_again`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import itertools
 import numpy as np
 import scipy
 
-from .limbs import HIPS, UPPER, drawn_in, limb_length, over_planted_feet, sink, solve_two_bones
+from .limbs import HIPS, UPPER, ankle_moved, drawn_in, limb_length, over_planted_feet, sink, solve_two_bones
 from .skeleton import ARMS, LEGS, SMPL22, TOES
 from .smoothing import begun_before, eased_marks, smoothstep, without_flicker
 from .touch.arms import arms_apart
@@ -28,7 +28,7 @@ _LOW = (0.15, 0.4)
 """Heights in metres of an adult's toe up to which a foot belongs to a step, and from which it goes with the body."""
 _SINKS = 0.09
 """Metres by which a body sinks at most, as a share of its size, for steps that are long for its legs."""
-_STRIDE, _EASED = 8, 4.0
+_STRIDE, _EASED = 8, 5.0
 """Frames to both sides over which the deepest sinking counts, and over which it is smoothed: a walk bobs little."""
 _STRAIGHT = 0.985
 """Share of a leg's length that a step uses."""
@@ -110,12 +110,8 @@ def _stepping(own: Array, size: float, way: float, free: Array, now: float = 1.0
 def on_legs(person: Array, ankles: list[Array], forward: Array) -> Array:
     """A person (T, 22, 3) whose legs end at ``ankles``, two of (T, 3); feet keep their directions."""
     result = person.copy()
-    for (hip, knee, ankle, toe), goal in zip(LEGS, ankles, strict=True):
-        foot = person[:, toe] - person[:, ankle]
-        result[:, knee], result[:, ankle] = solve_two_bones(
-            person[:, hip], person[:, knee], person[:, ankle], goal, forward
-        )
-        result[:, toe] = result[:, ankle] + foot
+    for leg, goal in zip(LEGS, ankles, strict=True):
+        ankle_moved(result, leg, goal, forward)
     return result
 
 
@@ -160,13 +156,13 @@ _REACH = 0.965
 """Share of an arm's length that a hand reaches."""
 _HANGS = 0.01
 """Metres beside its line by which an arm counts as bent downwards and back: what is straight has no side."""
-_ROUNDS, _STOOPS = 2, 3
-_SHARES = 12
-"""Rounds in which a place is sought that two hands reach."""
+_ROUNDS, _STOOPS, _SHARES = 2, 3, 12
+"""Rounds in which hands reach for each other, in which the taller stoops, and in which a place is sought that two hands
+reach."""
 _LEANS, _BENDS, _MOST_LEAN, _BACK = 2.2, 0.45, 1.0, 0.16
 """Radians of lean, and metres by which the hips sink, for a metre by which an arm is too short; radians at most; and
 metres that the hips go back for a radian."""
-_LATE, _EASED = 10, 5.0
+_LATE = 10
 """Frames to both sides over which the deepest stoop counts, and over which it is smoothed."""
 _CERTAIN, _SPARED = (0.5, 1.0), 0.03
 """How much so a hand touches for the taller to stoop for it, and metres by which an arm may be too short."""
@@ -175,21 +171,16 @@ _HEADS = 0.34
 _SEES, _NODS = (0.3, 0.7), 0.6
 """Cosines between where a chest faces and the other's head from which a head follows it; radians of a nod at most."""
 _J = SMPL22.index
-_LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
-_BONES = tuple(
-    (_J(start), _J(end))
-    for start, end in (
-        ("pelvis", "spine3"),
-        ("spine3", "neck"),
-        ("left_collar", "left_shoulder"),
-        ("right_collar", "right_shoulder"),
-        ("neck", "head"),
-        *((f"{side}_{start}", f"{side}_{end}") for side in ("left", "right") for start, end in _LIMBS),
-    )
+_NECK, _HEAD = _J("neck"), _J("head")
+_BONES = (
+    (0, _CHEST),
+    (_CHEST, _NECK),
+    *((_J(f"{side}_collar"), arm[0]) for side, arm in zip(("left", "right"), ARMS, strict=True)),
+    (_NECK, _HEAD),
+    *(bone for side in (0, 1) for limb in (ARMS[side], LEGS[side][:3]) for bone in itertools.pairwise(limb)),
 )
 _TRUNK = 4
 """The first of these, on which a hand slides up and down; the next is that of the head."""
-_NECK, _HEAD = _J("neck"), _J("head")
 
 
 def met_again(made: Array, small: Array, sizes: tuple[float, float]) -> Array:

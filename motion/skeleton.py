@@ -76,6 +76,11 @@ class Skeleton(Tree):
         """(J,) length of the bone that ends in each joint in metres, 0 for the root."""
         return np.linalg.norm(self.offsets, axis=-1)
 
+    def standing(self) -> Array:
+        """(J, 3) the T-pose with its lowest joint on the floor, metres."""
+        rest = self.rest_positions()
+        return np.asarray(rest - [0.0, rest[:, 1].min(), 0.0])
+
     @cached_property
     def mirror(self) -> tuple[int, ...]:
         """For every joint, the joint that takes its place when left and right are swapped."""

@@ -16,7 +16,7 @@ from .limbs import solve_two_bones
 from .skeleton import LEGS, SMPL22
 from .smoothing import minimum_jerk
 from .transforms import facing, heading, heading_matrix
-from .vectors import FLAT, Array, wrapped
+from .vectors import FLAT, Array, heading_of, unit, wrapped
 
 TURN_FROM, TURN_UNTIL = np.radians(35), np.radians(6)
 """Angle to the goal from which the body turns, and at which it has turned; between them the head alone does."""
@@ -201,8 +201,7 @@ def _too_high(pose: Array, leg: tuple[int, ...], place: Array) -> float:
 
 def _turned(first: Array, second: Array, share: float) -> Array:
     """A foot (3,) between two others, as long as the second one."""
-    between = first + share * (second - first)
-    return between * np.linalg.norm(second) / max(float(np.linalg.norm(between)), 1e-9)
+    return unit(first + share * (second - first)) * np.linalg.norm(second)
 
 
 def _angle_to(pose: Array, goal: Goal) -> float:
@@ -210,4 +209,4 @@ def _angle_to(pose: Array, goal: Goal) -> float:
     way = (goal.towards - pose[0]) * FLAT * (-1 if goal.away else 1)
     if np.linalg.norm(way) < 1e-6:
         return 0.0
-    return wrapped(float(np.arctan2(way[0], way[2]) - heading(pose[None])[0]))
+    return wrapped(float(heading_of(way) - heading(pose[None])[0]))

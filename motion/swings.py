@@ -7,10 +7,10 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .limbs import solve_two_bones
-from .skeleton import LEGS, SMPL22
+from .skeleton import ARMS, LEGS, SMPL22
 from .smoothing import begun_before, least_jerk
 from .transforms import facing
-from .vectors import Array, floor_speed, runs, unit
+from .vectors import FLAT, Array, floor_speed, runs, square_to, unit
 
 _FAST = 0.6
 """Metres a second on the floor from which a foot swings."""
@@ -71,8 +71,7 @@ def _turned(ankle: Array, toe: Array, raised: Array, moved: NDArray[np.bool_]) -
         return toe
     bone = least_jerk(np.where(moved[:, None], raised, toe) - ankle, np.where(moved, _SOFT_TURN, 1e7))
     length = np.linalg.norm(toe - ankle, axis=-1, keepdims=True)
-    turned = ankle + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
-    return np.where(moved[:, None], turned, toe)
+    return np.where(moved[:, None], ankle + unit(bone) * length, toe)
 
 
 def _heights(toe: Array, hips: Array, upright: NDArray[np.bool_], forward: Array, fps: float) -> Array:
@@ -106,11 +105,10 @@ def _raised(ankle: Array, toe: Array, lift: Array, forward: Array) -> Array:
     bone = toe - ankle
     length = np.linalg.norm(bone, axis=-1)
     drop = np.clip(-bone[:, 1] - lift, -0.5 * length, length)
-    along = bone * [1.0, 0.0, 1.0]
+    along = bone * FLAT
     # A foot that hangs straight down has no direction of its own.
     along += np.maximum(_HANGS - np.linalg.norm(along, axis=-1, keepdims=True), 0.0) * forward
-    along = unit(along)
-    turned = ankle + along * np.sqrt(np.maximum(length**2 - drop**2, 0.0))[:, None]
+    turned = ankle + unit(along) * np.sqrt(np.maximum(length**2 - drop**2, 0.0))[:, None]
     turned[:, 1] = ankle[:, 1] - drop
     return np.where((lift > _LEAST)[:, None], turned, toe)
 
@@ -129,7 +127,6 @@ _DEEP = {
 }
 """Metres from the joints of the trunk and the head, of either side, to the skin of a body that lies."""
 _TRUNK = {j: _DEEP[part] for j, name in enumerate(SMPL22.joint_names) if (part := name.split("_")[-1]) in _DEEP}
-_LIMBS = (("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle"))
 _THIN = 0.03
 """The same for elbows, wrists and knees."""
 _REACH = 4
@@ -152,17 +149,15 @@ def above_floor(positions: Array) -> Array:
     need = np.max(np.array([*_TRUNK.values()]) - result[:, [*_TRUNK], 1], axis=1).clip(min=0.0)
     if need.any():
         result[..., 1] += begun_before(need, _REACH, 0.5 * _REACH)[:, None]
-    for parts in _LIMBS:
-        for side in ("left", "right"):
-            root, middle, end = (SMPL22.index(f"{side}_{part}") for part in parts)
-            if parts[-1] == "wrist":
-                goal = result[:, end].copy()
-                goal[:, 1] = np.maximum(goal[:, 1], _THIN)
-                moved = goal[:, 1] > result[:, end, 1]
-                up = np.broadcast_to([0.0, 1.0, 0.0], goal.shape)
-                bent, met = solve_two_bones(result[:, root], result[:, middle], result[:, end], goal, up)
-                result[moved, middle], result[moved, end] = bent[moved], met[moved]
-            result[:, middle] = _turned_up(result[:, root], result[:, middle], result[:, end])
+    for root, middle, wrist in ARMS:
+        goal = result[:, wrist].copy()
+        goal[:, 1] = np.maximum(goal[:, 1], _THIN)
+        moved = goal[:, 1] > result[:, wrist, 1]
+        up = np.broadcast_to([0.0, 1.0, 0.0], goal.shape)
+        bent, met = solve_two_bones(result[:, root], result[:, middle], result[:, wrist], goal, up)
+        result[moved, middle], result[moved, wrist] = bent[moved], met[moved]
+    for root, middle, end, *_ in (*ARMS, *LEGS):
+        result[:, middle] = _turned_up(result[:, root], result[:, middle], result[:, end])
     return result
 
 
@@ -171,13 +166,11 @@ def _turned_up(root: Array, middle: Array, end: Array) -> Array:
     low = middle[:, 1] < _THIN
     if not low.any():
         return middle
-    axis = end - root
-    axis = unit(axis)
-    on_axis = root + np.sum((middle - root) * axis, axis=-1, keepdims=True) * axis
-    out = middle - on_axis
+    axis = unit(end - root)
+    out = square_to(middle - root, axis)
+    on_axis = middle - out
     aside = np.linalg.norm(out, axis=-1, keepdims=True)
-    up = np.array([0.0, 1.0, 0.0]) - axis[:, 1:2] * axis
-    up = unit(up) * aside
+    up = unit(np.array([0.0, 1.0, 0.0]) - axis[:, 1:2] * axis) * aside
     low_share, high_share = np.zeros((len(root), 1)), np.ones((len(root), 1))
     for _ in range(_HALVINGS):
         share = (low_share + high_share) / 2

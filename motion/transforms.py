@@ -15,7 +15,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from .skeleton import LEGS, SMPL22
-from .vectors import Array
+from .vectors import FLAT, Array, heading_of
 
 if TYPE_CHECKING:
     from .clip import Clip
@@ -44,8 +44,7 @@ def facing(positions: Array) -> Array:
 
 def heading(positions: Array) -> Array:
     """(…, T) heading of the body in radians, 0 along +Z and positive towards +X."""
-    forward = facing(positions)
-    return np.arctan2(forward[..., 0], forward[..., 2])
+    return heading_of(facing(positions))
 
 
 def turn(positions: Array, angle: float) -> Array:
@@ -63,7 +62,7 @@ def canonicalize(positions: Array) -> Array:
         the same shape, with that person's root at XZ = 0, facing +Z. Heights do not change.
     """
     reference = positions[0] if positions.ndim == 4 else positions
-    root = reference[0, 0] * np.array([1.0, 0.0, 1.0])
+    root = reference[0, 0] * FLAT
     return turn(positions - root, -float(heading(reference[0])))
 
 

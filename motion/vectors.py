@@ -25,10 +25,20 @@ def left_of(way: Array) -> Array:
     return np.stack([way[..., 2], np.zeros(way.shape[:-1]), -way[..., 0]], axis=-1)
 
 
+def square_to(vectors: Array, axis: Array) -> Array:
+    """(…, 3) vectors without their part along unit vectors (…, 3)."""
+    return np.asarray(vectors - np.sum(vectors * axis, axis=-1, keepdims=True) * axis)
+
+
+def heading_of(way: Array) -> Array:
+    """(…,) radians from +Z towards +X of directions (…, 3) as seen from above."""
+    return np.asarray(np.arctan2(way[..., 0], way[..., 2]))
+
+
 def square_frame(up: Array, across: Array) -> Array:
     """(…, 3, 3) rotation whose Y column is ``up`` and whose X column is ``across`` made square to it; both (…, 3)."""
     y = unit(up)
-    x = unit(across - np.sum(across * y, axis=-1, keepdims=True) * y)
+    x = unit(square_to(across, y))
     return np.stack([x, y, np.cross(x, y)], axis=-1)
 
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
 from motion import Duet, InputError, stacked_positions
 from motion.transforms import resample, turn
+from motion.vectors import FLAT, heading_of
 
 FIRST, SECOND, TIE = "first", "second", "tie"
 MOST_PAIRS = 100
@@ -41,24 +40,6 @@ class StudyEntry:
     voters: int = 0
 
 
-class StudiesLike(Protocol):
-    """Blind studies as the page uses them. Every method raises InputError with a sentence where it cannot."""
-
-    def create(
-        self, owner: str, question: str, runs: tuple[str, str], pairs: Sequence[Pair], *, address: str = ""
-    ) -> StudyEntry:
-        """Makes a study of copies of the motions; ``address`` is that of a person known by a cookie alone."""
-
-    def mine(self, owner: str) -> Sequence[StudyEntry]:
-        """The owner's studies with the count of their votes, newest first."""
-
-    def delete(self, study: str, owner: str) -> None:
-        """Deletes a study with its votes."""
-
-    def export(self, study: str, owner: str, file: Path) -> int:
-        """Writes all votes as .csv; returns how many."""
-
-
 def paired(first: Sequence[tuple[str, Duet]], second: Sequence[tuple[str, Duet]]) -> list[Pair]:
     """Sentences and motions of two runs beside each other, in their order, as far as both have one.
 
@@ -84,5 +65,5 @@ def as_shown(motion: Duet) -> Duet:
     people = np.stack([resample(person, motion.fps, FPS) for person in stacked_positions(motion)])
     start = people[:, 0, 0]
     line = start[1] - start[0]
-    people = turn(people - start.mean(axis=0) * [1, 0, 1], -float(np.arctan2(line[0], line[2])))
+    people = turn(people - start.mean(axis=0) * FLAT, -float(heading_of(line)))
     return Duet.from_positions(people, fps=FPS, skeleton=motion.skeleton)

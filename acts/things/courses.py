@@ -11,9 +11,9 @@ import numpy as np
 from motion import InputError
 from motion.hands import SIDES
 from motion.things import FURNITURE, Mesh, Thing, shape
-from motion.things.hands import WITHIN, Hands, Moment, kick, level, lowest, meeting, release, smoothed, yaw_of
+from motion.things.hands import WITHIN, Hands, Moment, kick, level, lowest, meeting, release, smoothed
 from motion.things.tracks import BLEND, Course, Track, at_rest, held, takes_both_hands, upright_frame
-from motion.vectors import FLAT, square_frame
+from motion.vectors import FLAT, heading_of, square_frame
 
 from .uses import Use
 
@@ -213,7 +213,7 @@ class ThingCourse:
             support = TABLE if use.on == "computer" else support
             mesh = shape(use.on, height=support)
             place = (spot + (mesh.size[2] / 2 - 0.15) * ahead) * FLAT
-            self.tables.append(Thing.at_rest(use.on, mesh, place, yaw_of(-ahead), hands.frames))
+            self.tables.append(Thing.at_rest(use.on, mesh, place, heading_of(-ahead), hands.frames))
         rest = at_rest(self.kind, self.surface, spot * FLAT + [0, support, 0], ahead, hands.frames)
         self.course.put(frame, rest)
         self._let_hands_go(frame)

@@ -15,9 +15,9 @@ from motion import SMPL22
 from motion.metrics.sentences.joints import stretches
 from motion.smoothing import smoothstep
 from motion.things import FIXTURES, Thing, kinds, shape
-from motion.things.hands import Hands, level, smoothed, yaw_of
+from motion.things.hands import Hands, level, smoothed
 from motion.transforms import heading_matrix
-from motion.vectors import FLAT, Array
+from motion.vectors import FLAT, Array, heading_of
 
 from .uses import Use
 
@@ -105,7 +105,7 @@ def _spot(hands: Hands, person: int, rest: tuple[int, int]) -> Spot:
 
 def _seat(kind: str, name: str, hips: Array, ahead: Array, height: float, frames: int) -> Thing:
     place = hips + _BACK * ahead
-    yaw = yaw_of(ahead)
+    yaw = heading_of(ahead)
     if kind == "bed":  # people sit on its side
         place, yaw = place - 0.3 * ahead, yaw - np.pi / 2
     return Thing.at_rest(kind, shape(kind, height=round(height, 2)), place * FLAT, yaw, frames, name)
@@ -122,7 +122,7 @@ def _shared(hands: Hands, use: Use, spots: dict[int, Spot]) -> Thing | None:
     width = round(min(max(gap + 0.8, 1.3), 2.6), 1)
     place = ((one + other) / 2 + _BACK * ahead) * FLAT
     mesh = shape("bench", height=round(min(low, high), 2), width=width)
-    return Thing.at_rest("bench", mesh, place, yaw_of(ahead), hands.frames, use.name)
+    return Thing.at_rest("bench", mesh, place, heading_of(ahead), hands.frames, use.name)
 
 
 def _tables(hands: Hands, use: Use, spots: dict[int, Spot]) -> Iterator[tuple[Use, tuple[int, ...], Thing]]:
@@ -133,11 +133,11 @@ def _tables(hands: Hands, use: Use, spots: dict[int, Spot]) -> Iterator[tuple[Us
         if gap < 2.4:
             middle = (pairs[0][0] + pairs[1][0]) / 2 * FLAT
             mesh = shape("table", width=round(max(min(1.2, (gap - 0.7) / 0.9), 0.5), 2))
-            yield use, tuple(spots), Thing.at_rest("table", mesh, middle, yaw_of(pairs[0][1]), hands.frames)
+            yield use, tuple(spots), Thing.at_rest("table", mesh, middle, heading_of(pairs[0][1]), hands.frames)
             return
     for who, (hips, ahead, _) in spots.items():
         place = (hips + AT_TABLE * ahead) * FLAT
-        yield use, (who,), Thing.at_rest(use.on, shape(use.on), place, yaw_of(-ahead), hands.frames)
+        yield use, (who,), Thing.at_rest(use.on, shape(use.on), place, heading_of(-ahead), hands.frames)
 
 
 def _doors(hands: Hands, use: Use) -> Iterator[tuple[Use, tuple[int, ...], Thing]]:
@@ -150,7 +150,9 @@ def _doors(hands: Hands, use: Use) -> Iterator[tuple[Use, tuple[int, ...], Thing
     if np.linalg.norm(ahead[[0, 2]]) < 1.0:
         return
     middle = way[int(np.linalg.norm((way - way[0])[:, [0, 2]], axis=1).searchsorted(np.linalg.norm(ahead[[0, 2]]) / 2))]
-    door = Thing.at_rest("door frame", shape("door frame"), middle * FLAT, yaw_of(level(ahead)), hands.frames, "door")
+    door = Thing.at_rest(
+        "door frame", shape("door frame"), middle * FLAT, heading_of(level(ahead)), hands.frames, "door"
+    )
     yield use, use.agents, door
 
 
@@ -218,9 +220,9 @@ class Fixture:
 
     def things(self, frames: int, fps: float) -> Iterator[Thing]:
         """The body and the moving parts, each with its track."""
-        yield Thing.at_rest(self.kind, shape(self.kind), self.place, yaw_of(self.ahead), frames, self.name)
+        yield Thing.at_rest(self.kind, shape(self.kind), self.place, heading_of(self.ahead), frames, self.name)
         for leaf in LEAVES.get(self.kind, ()):
-            yield placed_leaf(leaf, self.place, yaw_of(self.ahead), self._open(leaf, frames, fps))
+            yield placed_leaf(leaf, self.place, heading_of(self.ahead), self._open(leaf, frames, fps))
 
     def _open(self, leaf: Leaf, frames: int, fps: float) -> Array:
         """(T,) how far a part is open, 0 to 1."""

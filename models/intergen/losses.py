@@ -19,12 +19,10 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
-from motion.skeleton import SMPL22
+from motion.representation import CONTACT_HEIGHTS, CONTACT_SQUARED_STEP
+from motion.skeleton import FEET, SMPL22
 
-FEET = tuple(SMPL22.index(name) for name in ("left_ankle", "left_foot", "right_ankle", "right_foot"))
 LEFT_HIP, RIGHT_HIP = SMPL22.index("left_hip"), SMPL22.index("right_hip")
-CONTACT_HEIGHTS = (0.12, 0.05, 0.12, 0.05)  # metres, of the joints in FEET
-CONTACT_STEP = 0.001  # squared displacement in a frame, m²
 NEAR = 1.0  # metres: pairs of joints that the distance map looks at
 TOUCH = 0.1  # metres: pairs of joints that joint affinity draws together
 EPSILON = 1e-7
@@ -73,8 +71,8 @@ def foot_contact_loss(pred: Tensor, mask: Tensor | None = None) -> Tensor:
     """
     feet = pred[..., FEET, :]
     step = feet.diff(dim=1)
-    low = feet[:, :-1, ..., 1] < torch.tensor(CONTACT_HEIGHTS, device=pred.device)
-    contact = ((step.square().sum(-1) < CONTACT_STEP) & low).to(pred.dtype)
+    low = feet[:, :-1, ..., 1] < torch.as_tensor(CONTACT_HEIGHTS).to(pred)
+    contact = ((step.square().sum(-1) < CONTACT_SQUARED_STEP) & low).to(pred.dtype)
     error = (step.square().mean(-1) * contact).sum(-1) / (contact.sum(-1) + EPSILON)
     mask = _person_mask(mask)
     return masked_mean(error, None if mask is None else mask[:, :-1])

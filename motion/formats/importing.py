@@ -17,7 +17,7 @@ from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.guesses import calibration_frames, find_up, places_of, turn_of
 from motion.retarget import UNITS, rest_axis, retarget_together, to_smpl, unit_of, up_axis
-from motion.rigs import RigMotion, match_joints, without_beginning
+from motion.rigs import RigMotion, without_beginning
 from motion.skeleton import LAYOUTS, SMPL22
 from motion.vectors import Array
 
@@ -168,7 +168,7 @@ def _import_rigs(rigs: list[RigMotion], label: str, choices: ImportChoices) -> I
     else:
         people = retarget_together(rigs, fps=RIG_FPS)
     unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rigs[0].metres_per_unit)), "none")
-    return Imported(people, up, unit, first.fps * first.every, match_joints(rigs[0]).matched)
+    return Imported(people, up, unit, first.fps * first.every, rigs[0].parts.matched)
 
 
 # ---- clips -------------------------------------------------------------------------------------------

@@ -22,7 +22,7 @@ from motion.errors import InputError
 from motion.retarget import UNITS
 from motion.skeleton import POINTS17
 from motion.smoothing import filled
-from motion.vectors import Array, unit
+from motion.vectors import Array, square_to, unit
 
 from .files import MAX_FRAMES, MAX_NUMBERS, MAX_SECONDS, check_duration, check_rate, text_bytes
 from .recording import ImportChoices, Recording
@@ -132,10 +132,9 @@ def _add_hips(joints: dict[str, Array], markers: Points) -> None:
         front = (markers[left] + markers[right]) / 2
         wide = markers[left] - markers[right]
         width = np.linalg.norm(wide, axis=-1, keepdims=True)
-        across = wide / np.maximum(width, 1e-9)
+        across = unit(wide)
         behind = np.mean([markers[name] for name in back], axis=0) - front
-        behind -= np.sum(behind * across, axis=-1, keepdims=True) * across
-        behind = unit(behind)
+        behind = unit(square_to(behind, across))
         down = np.cross(behind, across)
         for side, sign in (("left", 1.0), ("right", -1.0)):
             joints.setdefault(f"{side}_hip", front + width * (0.36 * sign * across + 0.19 * behind + 0.30 * down))

@@ -6,15 +6,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion import SMPL22, Duet
-from motion.cleaning import ANKLE_HEIGHT, TOE_HEIGHT
+from motion.kinematics import bone_lengths
 from motion.looks import size_of
-from motion.skeleton import TOES
+from motion.representation import CONTACT_HEIGHTS
+from motion.skeleton import FEET, TOES
 from motion.transforms import facing
 from motion.vectors import Array, left_of, wrapped
 
 from .bodies import CAPSULES, depths
+
+
+def _low_feet(positions: Array) -> NDArray[np.bool_]:
+    """(…, T, side) feet of (…, T, J, 3) whose ankles and toes are both low enough to stand on the floor."""
+    low = positions[..., list(FEET), 1] < CONTACT_HEIGHTS
+    return np.asarray(low.reshape(*low.shape[:-1], 2, 2).all(axis=-1))
 
 
 def foot_skate(duet: Duet) -> float:
@@ -24,7 +32,7 @@ def foot_skate(duet: Duet) -> float:
     12 cm in both: a swinging foot also passes close to the floor, but with its heel lifted.
     """
     positions = duet.positions
-    low = (positions[:, :, TOES, 1] < TOE_HEIGHT) & (positions[:, :, _ANKLES, 1] < ANKLE_HEIGHT)
+    low = _low_feet(positions)
     path = positions[:, :, TOES][..., [0, 2]].astype(np.float64)
     speeds = np.linalg.norm(np.diff(path, axis=1), axis=-1) * duet.fps
     planted = speeds[low[:, 1:] & low[:, :-1]]
@@ -45,9 +53,7 @@ def bone_drift(duet: Duet) -> float:
     For every bone the standard deviation of its length over time as a share of its mean length, averaged
     over the bones of both people; 0 for a rigid skeleton.
     """
-    positions = duet.positions.astype(np.float64)
-    parents, children = (list(ends) for ends in zip(*SMPL22.bones, strict=True))
-    lengths = np.linalg.norm(positions[:, :, children] - positions[:, :, parents], axis=-1)
+    lengths = bone_lengths(duet.positions.astype(np.float64))
     mean = lengths.mean(axis=1)
     return float(100 * np.mean(lengths.std(axis=1) / np.maximum(mean, 1e-6)))
 
@@ -84,7 +90,6 @@ SLOW = 1.0
 """Hertz below which people's arms have most of their energy (Hogan and Sternad 2007 hold jerk to be set by tempo)."""
 TWISTED = 60.0
 """Degrees between shoulders and hips beyond which a spine hardly turns."""
-_ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 _HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 _SHOULDERS = (SMPL22.index("left_shoulder"), SMPL22.index("right_shoulder"))
 _WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
@@ -140,7 +145,7 @@ def standing_foot(positions: Array, fps: float) -> float:
     A foot is on the floor where its toe joint is below 5 cm and its ankle joint below 12. No speed is asked of it, so
     that a foot that glides is not taken for one that swings.
     """
-    low = (positions[:, TOES, 1] < TOE_HEIGHT) & (positions[:, _ANKLES, 1] < ANKLE_HEIGHT)
+    low = _low_feet(positions)
     speed = np.linalg.norm(np.diff(positions[:, TOES][..., [0, 2]], axis=0), axis=-1) * fps
     slower = np.where(low[1:] & low[:-1], speed, np.inf).min(axis=1)
     slower = slower[np.isfinite(slower)]

@@ -160,8 +160,3 @@ def level(vectors: Array) -> Array:
 def smoothed(values: Array, width: int) -> Array:
     """(T, …) the mean over an odd number of frames about each; the ends are repeated."""
     return scipy.ndimage.uniform_filter1d(values, width, axis=0, mode="nearest")
-
-
-def yaw_of(direction: Array) -> float:
-    """Radians from +Z towards +X of a direction (3,)."""
-    return float(np.arctan2(direction[0], direction[2]))

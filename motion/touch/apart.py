@@ -16,7 +16,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion.cleaning import foot_contacts
-from motion.limbs import HIPS, UPPER, over_planted_feet, solve_two_bones
+from motion.limbs import HIPS, UPPER, ankle_moved, over_planted_feet
 from motion.metrics.bodies import CAPSULES, closest_points
 from motion.skeleton import LEGS
 from motion.smoothing import begun_before, eased_marks, minimum_jerk
@@ -119,14 +119,12 @@ def _leg_depth(pair: Array, person: int, leg: Sequence[int], way: Array, raised:
 
 def _foot_moved(person: Array, leg: Sequence[int], by: Array) -> Array:
     """A person (T, 22, 3) with an ankle and a toe moved by (T, 3) metres, and the knee after them."""
-    hip, knee, ankle, toe = leg
     result = np.array(person)
     goes = np.abs(by).max(axis=1) > 0
     if goes.any():
-        limb = person[goes, hip], person[goes, knee], person[goes, ankle]
-        goal = limb[2] + by[goes]
-        result[goes, knee], result[goes, ankle] = solve_two_bones(*limb, goal, facing(person)[goes])
-        result[goes, toe] = result[goes, ankle] + person[goes, toe] - person[goes, ankle]
+        moved = result[goes]
+        ankle_moved(moved, leg, moved[:, leg[2]] + by[goes], facing(moved))
+        result[goes] = moved
     return result
 
 

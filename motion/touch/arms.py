@@ -112,12 +112,10 @@ def _bent(person: Array, moved: Array, grips: Array) -> Array:
         bend = person[:, elbow] + moved[:, side, 0]
         grip = grips[:, side, None]
         goal = person[:, wrist] + moved[:, side, 1]
-        upper = bend - person[:, shoulder]
-        length = np.linalg.norm(person[:, elbow] - person[:, shoulder], axis=-1, keepdims=True)
-        bend = person[:, shoulder] + upper * length / np.maximum(np.linalg.norm(upper, axis=-1, keepdims=True), 1e-9)
+        upper = np.linalg.norm(person[:, elbow] - person[:, shoulder], axis=-1, keepdims=True)
+        bend = person[:, shoulder] + unit(bend - person[:, shoulder]) * upper
         lower = np.linalg.norm(person[:, wrist] - person[:, elbow], axis=-1, keepdims=True)
-        ahead = goal - bend
-        end = bend + ahead * lower / np.maximum(np.linalg.norm(ahead, axis=-1, keepdims=True), 1e-9)
+        end = bend + unit(goal - bend) * lower
         # Half way between the arm that keeps its elbow and the one that keeps its hand.
         goal = goal + 0.5 * (1 - grip) * (end - goal)
         bent, met = solve_two_bones(person[:, shoulder], bend, end, goal, bend - person[:, wrist])

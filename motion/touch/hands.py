@@ -146,7 +146,7 @@ def shaken(pair: Array, mine: Arm, theirs: Arm) -> NDArray[np.bool_]:
 
 def _near(pair: Array, mine: Arm, theirs: Arm) -> NDArray[np.bool_]:
     """(T,) frames at which two wrists meet."""
-    return np.asarray(np.linalg.norm(pair[0, :, mine[-1]] - pair[1, :, theirs[-1]], axis=-1) < _MEETS)
+    return np.asarray(_gap(pair, (mine, theirs)) < _MEETS)
 
 
 def _aside(way: Array, mine: Arm, theirs: Arm) -> Array:
@@ -191,7 +191,7 @@ _BACK_EASE, _SHORTEST_SHAKE = 18, 12
 """Frames in which backs are straightened before hands meet and after, and of the shortest handshake."""
 _STRAIGHT, _MOST = -0.1, 0.5
 """Radians by which the upper back of people who stand leans forward, and that it is straightened at most."""
-_SPINE, _NECK = SMPL22.index("spine3"), SMPL22.index("neck")
+_NECK = SMPL22.index("neck")
 _HANGS = {joint: arm[0] for arm in ARMS for joint in arm[1:]}
 """The shoulder that an elbow and a wrist hang from."""
 _BACK = [joint for joint in UPPER if joint not in _HANGS and not SMPL22.joint_names[joint].startswith("spine")]

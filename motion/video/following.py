@@ -133,7 +133,7 @@ class FollowedPerson:
         self._turn = upright(np.radians(self.tilt)) @ _UP
         chosen, _ = layout_points(stack, trust)
         _, root, self._body, self._size = pose_bodies(chosen, LAYOUT)
-        self._origin = np.asarray(root[-1] @ self._turn.T / self._size) * [1, 0, 1]
+        self._origin = np.asarray(root[-1] @ self._turn.T / self._size) * FLAT
         self._measured.clear()
 
     def _finished(self, points: Array, seen: Array, seconds: float, turn: Array) -> Array:

@@ -19,7 +19,7 @@ from motion.ik import fit_skeleton
 from motion.kinematics import project_to_skeleton
 from motion.skeleton import SMPL22, Layout, offsets_of
 from motion.transforms import resample
-from motion.vectors import Array
+from motion.vectors import FLAT, Array
 
 from .landmarks import INDEX, Landmarks
 from .place import body_tilt, focal_length, level, smooth, steady_path, towards, translation, upright
@@ -94,7 +94,7 @@ def person_of(landmarks: Landmarks, *, name: str = "Film") -> Filmed:
     tilt = float(np.clip(np.degrees(level(fitted, lean, fps=track.fps)), *TILTS))
     turn = upright(np.radians(tilt)) @ np.diag([1.0, -1.0, -1.0])  # from the axes of the fit to the world's
     positions = _finished(fitted @ turn.T, track.fps)
-    clip = Clip(positions - positions[0, 0] * [1, 0, 1], FPS, name=name)
+    clip = Clip(positions - positions[0, 0] * FLAT, FPS, name=name)
     return Filmed(clip, _confidence(track, len(positions)), tilt, _notes(track, landmarks))
 
 

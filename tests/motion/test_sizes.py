@@ -7,6 +7,7 @@ import numpy as np
 from motion import SMPL22
 from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import stepping
+from motion.kinematics import bone_lengths
 from motion.looks import SIZES
 from motion.sizes import at_sizes, floor_scale, of_adults
 from motion.skeleton import LEGS
@@ -49,11 +50,6 @@ def hand_in_hand() -> np.ndarray:
         elbow = 0.5 * (shoulder + hand) - [0.0, 0.0, 0.06]
         person[:, J(f"{side}_elbow")], person[:, J(f"{side}_wrist")] = elbow, hand
     return np.stack([one, other])
-
-
-def lengths(pair: np.ndarray) -> np.ndarray:
-    parents = np.array(SMPL22.parents)[1:]
-    return np.linalg.norm(pair[:, :, 1:] - pair[:, :, parents], axis=-1)
 
 
 def slides(person: np.ndarray, size: float) -> float:
@@ -125,7 +121,7 @@ def test_who_lies_with_their_toes_up_is_not_lifted() -> None:
 def test_adults_come_back_from_children() -> None:
     pair = hand_in_hand()
     back = of_adults(at_sizes(pair, MIXED), MIXED)
-    np.testing.assert_allclose(lengths(back), lengths(pair), atol=0.01)
+    np.testing.assert_allclose(bone_lengths(back), bone_lengths(pair), atol=0.01)
     np.testing.assert_allclose(back[:, :, ANKLES], pair[:, :, ANKLES], atol=0.01)
     np.testing.assert_allclose(back[:, :, 0] * FLAT, pair[:, :, 0] * FLAT, atol=0.01)
     assert (np.abs(back - pair)[:, :, 0, 1] < 0.1).all(), "who has bent their knees keeps them bent"

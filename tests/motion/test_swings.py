@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from acts.staging.poses import kneeling, lying, upright
 from motion import SMPL22
+from motion.kinematics import bone_lengths
 from motion.swings import above_floor, lift_swinging_feet
 
 Array = NDArray[np.floating]
@@ -66,11 +67,6 @@ TRUNK = [SMPL22.index(name) for name in ("pelvis", "spine2", "neck", "head", "le
 LIMBS = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("elbow", "wrist", "knee")]
 
 
-def lengths(positions: Array) -> Array:
-    parents, children = zip(*SMPL22.bones, strict=True)
-    return np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
-
-
 def falling(deep: float) -> Array:
     """(40, 22, 3) a person who lies and sinks by so many metres and comes back."""
     sunk = deep * np.sin(np.linspace(0, np.pi, 40)) ** 2
@@ -83,7 +79,7 @@ def test_a_body_that_sinks_into_the_floor_is_raised_without_a_jolt(deep: float) 
     raised = above_floor(sunk)
     assert raised[:, TRUNK, 1].min() > 0.02 > sunk[:, TRUNK, 1].min()
     assert raised[:, LIMBS, 1].min() > 0.0
-    np.testing.assert_allclose(lengths(raised), lengths(sunk), atol=1e-9)
+    np.testing.assert_allclose(bone_lengths(raised), bone_lengths(sunk), atol=1e-9)
     assert np.abs(np.diff(raised[:, 0, 1], n=2)).max() < np.abs(np.diff(sunk[:, 0, 1], n=2)).max() + 0.02
 
 
@@ -96,7 +92,7 @@ def test_only_an_arm_in_the_floor_is_turned(side: str) -> None:
     pose[wrist] = pose[elbow] + SMPL22.bone_lengths[wrist] * down
     raised = above_floor(np.stack([pose] * 5))
     assert raised[:, [elbow, wrist], 1].min() > 0.02
-    np.testing.assert_allclose(lengths(raised), lengths(np.stack([pose] * 5)), atol=1e-9)
+    np.testing.assert_allclose(bone_lengths(raised), bone_lengths(np.stack([pose] * 5)), atol=1e-9)
     others = [joint for joint in range(22) if joint not in (elbow, wrist)]
     np.testing.assert_array_equal(raised[:, others], np.stack([pose] * 5)[:, others])
 

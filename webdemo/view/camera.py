@@ -15,7 +15,7 @@ from motion.errors import InputError
 from motion.skeleton import SMPL22
 from motion.things import FIXTURES
 from motion.transforms import heading
-from motion.vectors import Array
+from motion.vectors import Array, heading_of
 
 VIEWS = ("threequarter", "front", "side", "top", "a", "b")
 FIELD_OF_VIEW = np.pi / 4
@@ -193,7 +193,7 @@ def _heading(motion: Clip | Duet) -> float:
     people = stacked_positions(motion)[:, 0].astype(np.float64)
     way = people[-1, 0] - people[0, 0]
     if np.hypot(way[0], way[2]) > 0.05:
-        return float(np.arctan2(way[0], way[2]))
+        return float(heading_of(way))
     return float(heading(people[0]))
 
 

@@ -14,7 +14,7 @@ from motion.body import vertex_normals
 from motion.looks import Colour, rgb, themes
 from motion.skeleton import SMPL22
 from motion.smoothing import smoothstep
-from motion.vectors import Array, unit
+from motion.vectors import FLAT, Array, unit
 
 from .camera import Camera
 
@@ -127,7 +127,7 @@ def lit(
     """
     normals = vertex_normals(vertices, faces)
     right, _, forward = camera.axes
-    flat = forward * np.array([1.0, 0.0, 1.0])
+    flat = forward * FLAT
     key = unit(-0.75 * flat - 0.75 * right + np.array([0.0, 0.95, 0.0]))
     rim = unit(0.8 * flat + 0.9 * right + np.array([0.0, 0.55, 0.0]))
     to_eye = unit(camera.eye - vertices)

@@ -11,8 +11,7 @@ from motion.things import Thing
 from motion.things.hands import Hands
 
 FPS, FRAMES = 30, 120
-REST = SMPL22.rest_positions()
-REST = REST - np.array([0.0, REST[:, 1].min(), 0.0])
+REST = SMPL22.standing()
 GAP = 1.3
 """Metres between the two people."""
 

@@ -8,14 +8,16 @@ import re
 import time
 import tracemalloc
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from motion import InputError
+from motion import SMPL22, InputError
 from motion.formats.files import MAX_BYTES
 from motion.formats.importing import import_motion
 from motion.formats.recording import ImportChoices
+from motion.rigs import RigMotion
 from tests.motion.bodies import marching
 
 from .characters import packed
@@ -165,6 +167,17 @@ def test_the_largest_valid_file_of_a_reader_takes_five_times_the_limit_at_most(n
     finally:
         tracemalloc.stop()
     assert len(data) + peak < 5 * MAX_BYTES
+
+
+def test_many_joints_of_one_part_cost_no_more_than_a_look_at_some_frames() -> None:
+    hands = [f"{side}_hand{i}" for side in ("left", "right") for i in range(89)]
+    above = [SMPL22.index(name.partition("_")[0] + "_wrist") for name in hands]
+    offsets = np.concatenate([SMPL22.offsets, np.zeros((len(hands), 3))])
+    rig = RigMotion((*SMPL22.joint_names, *hands), (*SMPL22.parents, *above), offsets, np.empty(0), 60.0)
+    rig = replace(rig, positions=np.broadcast_to(rig.rest_positions().astype(np.float32), (33_000, len(offsets), 3)))
+    began = time.process_time()
+    assert rig.parts.matched == 22
+    assert time.process_time() - began < 1.0
 
 
 def test_more_numbers_than_a_motion_may_have_are_refused_before_they_are_kept() -> None:

@@ -11,9 +11,7 @@ FPS = 30
 
 def standing() -> np.ndarray:
     """(22, 3) the T-pose on the floor, at the origin, facing +Z."""
-    pose = SMPL22.rest_positions()
-    pose[:, 1] -= pose[:, 1].min()
-    return pose
+    return SMPL22.standing()
 
 
 def turned(pose: np.ndarray) -> np.ndarray:

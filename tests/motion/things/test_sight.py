@@ -10,7 +10,7 @@ from motion.things import Thing, shape
 from motion.things.sight import distances, looked_at
 from motion.vectors import unit
 
-STANDING = SMPL22.rest_positions() - [0, SMPL22.rest_positions()[:, 1].min(), 0]
+STANDING = SMPL22.standing()
 """A person at the origin who faces +Z."""
 
 

@@ -19,8 +19,7 @@ FEET = [J(f"{side}_{joint}") for side in ("left", "right") for joint in ("ankle"
 
 def _pair(gap: float, aside: float = 0.0, turned: float = np.pi) -> np.ndarray:
     """Two people with hanging arms, the second ``gap`` metres ahead and ``aside``: (2, T, 22, 3)."""
-    rest = SMPL22.rest_positions()
-    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    rest = SMPL22.standing()
     for side in ("left", "right"):
         for joint, down in (("elbow", 0.26), ("wrist", 0.52)):
             rest[J(f"{side}_{joint}")] = rest[J(f"{side}_shoulder")] - [0.0, down, 0.0]
@@ -69,7 +68,7 @@ def test_a_kick_ends_at_the_other_body() -> None:
     assert found[0, 45, J("right_ankle"), 2] > 0.4, "it still goes as far as the body"
 
 
-STANDING = SMPL22.rest_positions() - [0.0, SMPL22.rest_positions()[:, 1].min(), 0.0]
+STANDING = SMPL22.standing()
 WALK_FRAMES = 120
 
 

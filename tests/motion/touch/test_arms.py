@@ -15,8 +15,7 @@ FRAMES = 40
 
 def _pair(gap: float) -> np.ndarray:
     """Two people face to face whose arms are held out straight, ``gap`` metres apart: (2, T, 22, 3)."""
-    rest = SMPL22.rest_positions()
-    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    rest = SMPL22.standing()
     for side in ("left", "right"):
         shoulder = rest[J(f"{side}_shoulder")]
         for joint, reach in ((f"{side}_elbow", 0.26), (f"{side}_wrist", 0.527)):
@@ -47,8 +46,7 @@ def test_hands_that_hold_each_other_stay() -> None:
 def _from_behind() -> np.ndarray:
     """Two people who look the same way, the first with arms through the other's trunk, who come to it and leave it."""
     pair = _pair(0.3)
-    rest = SMPL22.rest_positions()
-    pair[1] = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0]) + [0.02, 0.0, 0.0]
+    pair[1] = SMPL22.standing() + np.array([0.02, 0.0, 0.0])
     for side in ("left", "right"):  # at their sides
         for joint, reach in ((f"{side}_elbow", 0.26), (f"{side}_wrist", 0.5)):
             pair[1, :, J(joint)] = pair[1, :, J(f"{side}_shoulder")] - [0.0, reach, 0.0]

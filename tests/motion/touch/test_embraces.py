@@ -18,8 +18,7 @@ HUGS = slice(55, 65)
 
 def _pair(gap: float = 0.55) -> np.ndarray:
     """Two people face to face, ``gap`` metres apart, who raise their arms past the other for a while: (2, T, 22, 3)."""
-    rest = SMPL22.rest_positions()
-    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    rest = SMPL22.standing()
     share = np.clip((30 - np.abs(np.arange(FRAMES) - 60)) / 12, 0.0, 1.0)
     angle = 0.5 * np.pi * share**2 * (3 - 2 * share)
     one = np.tile(rest, (FRAMES, 1, 1))

@@ -17,8 +17,7 @@ MINE, THEIRS = J("left_wrist"), J("right_wrist")
 
 def _walkers(gap: float = 0.6) -> np.ndarray:
     """Two who stand side by side, the second to the left, whose inner arms swing apart: (2, T, 22, 3)."""
-    rest = SMPL22.rest_positions()
-    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    rest = SMPL22.standing()
     pair = np.stack([np.tile(one, (FRAMES, 1, 1)) for one in (rest, rest + np.array([gap, 0.0, 0.0]))])
     angle = 0.35 * np.sin(np.arange(FRAMES) / 5)
     for person, swings in ((0, angle), (1, -angle)):
@@ -45,8 +44,7 @@ MEETS = slice(27, 34)
 
 def _pair(height: float = 0.2) -> np.ndarray:
     """Two people face to face who bring their right wrists together, ``height`` metres over the shoulder."""
-    rest = SMPL22.rest_positions()
-    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    rest = SMPL22.standing()
     share = np.clip((16 - np.abs(np.arange(PALM_FRAMES) - 30)) / 12, 0.0, 1.0)[:, None]
     one = np.tile(rest, (PALM_FRAMES, 1, 1))
     shoulder = rest[J("right_shoulder")]
@@ -111,8 +109,7 @@ SHAKES = slice(40, 50)
 
 def _bowed(bend: float = 0.4) -> np.ndarray:
     """Two people 0.7 m apart whose right hands meet for a while, with upper backs bent forward: (2, 90, 22, 3)."""
-    rest = SMPL22.rest_positions()
-    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    rest = SMPL22.standing()
     for side, sign in (("left", 1.0), ("right", -1.0)):
         for joint, length in (("elbow", 0.26), ("wrist", 0.51)):
             rest[J(f"{side}_{joint}")] = rest[J(f"{side}_shoulder")] + [0.05 * sign, -length, 0.0]
