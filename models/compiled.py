@@ -55,14 +55,14 @@ KEPT = 6
 """Translations in the cache folder, of 60 MB each; the least recently used are removed first."""
 
 
-def free_cores(load: Path = Path("/proc/loadavg")) -> int:
-    """Cores that nothing else uses at this moment, one at least; all of them where the system does not tell.
+_LOAD = Path("/proc/loadavg")
+"""Linux' file; its fourth field is ``running/all`` threads, the one that reads among those that run."""
 
-    Args:
-        load: Linux' file; its fourth field is ``running/all`` threads, this one among those that run.
-    """
+
+def free_cores() -> int:
+    """Cores that nothing else uses at this moment, one at least; all of them where the system does not tell."""
     try:
-        running = int(load.read_text().split()[3].partition("/")[0])
+        running = int(_LOAD.read_text().split()[3].partition("/")[0])
     except (OSError, ValueError, IndexError):
         return CORES
     return max(1, min(CORES, CORES - (running - 1)))

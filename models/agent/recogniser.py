@@ -21,7 +21,6 @@ from models.layers import encoder_layer, neighbours, sinusoids
 from motion.skeleton import SMPL22
 
 JOINTS = SMPL22.num_joints
-FPS = 30.0
 OBSERVED, PREDICTED = 30, 60
 """Numbers of observed and of predicted frames, at 30 fps."""
 EVERY = 3

@@ -24,8 +24,8 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.errors import Released
 from models.layers import encoder_layer
+from models.released import Released
 
 NETWORK = "BiGraphDiff"
 NODE_GRID = 4  # a frame's d features are d/16 channels over a 4 × 4 grid in the bipartite unit

@@ -31,8 +31,8 @@ from typing import cast
 import torch
 from torch import Tensor, nn
 
-from models.errors import Released
 from models.layers import neighbours
+from models.released import Released
 from motion.skeleton import SBU15
 
 NETWORK = "InterFormer"

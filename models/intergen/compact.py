@@ -135,11 +135,10 @@ class CaptionBank:
     vectors: Tensor
     far: float
 
-    def nearest(self, vector: Tensor, count: int = 3) -> list[tuple[float, str]]:
-        """The captions nearest to a unit sentence vector (384,): (cosine, caption), best first."""
-        scores = self.vectors.float() @ vector.float()
-        best = scores.topk(min(count, len(self.captions)))
-        return [(float(s), self.captions[int(i)]) for s, i in zip(best.values, best.indices, strict=True)]
+    def nearest(self, vector: Tensor) -> tuple[float, str]:
+        """The caption nearest to a unit sentence vector (384,), after its cosine."""
+        cosine, index = (self.vectors.float() @ vector.float()).max(dim=0)
+        return float(cosine), self.captions[int(index)]
 
 
 def load_captions(source: WeightsFolder) -> CaptionBank:

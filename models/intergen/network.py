@@ -20,8 +20,8 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.diffusion import TwoPersonDenoiser
-from models.errors import Released
 from models.layers import FeedForward, TimestepEmbedding, sinusoids
+from models.released import Released
 
 NETWORK = "InterGen"
 RELEASED_HEADS = 8

@@ -224,9 +224,9 @@ class CompactStream(Stream):
         model: CompactReGenNet,
         condition: Tensor,
         *,
-        steps: int = 5,
+        steps: int,
         scale: float = 1.0,
-        max_frames: int = 900,
+        max_frames: int,
         begin: Tensor | None = None,
     ) -> None:
         if max_frames < 1:

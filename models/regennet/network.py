@@ -23,8 +23,8 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.diffusion import Scheduler, classifier_free, denoise, make_scheduler
-from models.errors import Released
 from models.layers import TimestepEmbedding, sinusoids
+from models.released import Released
 from motion.errors import InputError
 
 NETWORK = "ReGenNet"
@@ -237,9 +237,7 @@ class ReactionStream(Stream):
     grows with their number.
     """
 
-    def __init__(
-        self, network: ReGenNet, *, steps: int = 5, batch: int = 1, action: Tensor | None = None, max_frames: int = 300
-    ) -> None:
+    def __init__(self, network: ReGenNet, *, steps: int, batch: int, action: Tensor | None, max_frames: int) -> None:
         if not network.config.online:
             raise StreamError("An offline ReGenNet needs the whole motion: choose online weights to stream.")
         scheduler = make_scheduler("ddim", steps, device=network.fuse_process.weight.device)

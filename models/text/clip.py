@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import torch
 from torch import Tensor, nn
 
-from models.errors import Released
+from models.released import Released
 from motion.errors import InputError
 
 if TYPE_CHECKING:

@@ -20,8 +20,8 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.errors import count_layers
 from models.layers import encoder_layer
+from models.released import Released
 from models.weights_io import mapped_tensors
 from motion.errors import InputError
 
@@ -118,13 +118,13 @@ class MiniLM(nn.Module):
         self.tokenizer = Tokenizer.from_file(str(files["tokenizer.json"]))
         self.tokenizer.enable_truncation(MAX_TOKENS)
         self.tokenizer.enable_padding()
-        weights = mapped_tensors(files["model.safetensors"])
+        weights = Released(mapped_tensors(files["model.safetensors"]), "MiniLM")
         words = weights["embeddings.word_embeddings.weight"]
         self.words = nn.Embedding.from_pretrained(words)
         # Every token is of the first of BERT's two segments, so that segment's vector joins the positions.
         segment = weights["embeddings.token_type_embeddings.weight"][0]
         self.positions = nn.Buffer(weights["embeddings.position_embeddings.weight"][:MAX_TOKENS] + segment)
-        layers = count_layers(weights, "encoder.layer.")
+        layers = weights.layers("encoder.layer.")
         with torch.device("meta"):  # the file's own tensors take the place of these
             self.norm = nn.LayerNorm(TOKEN_WIDTH, eps=1e-12)
             layer = nn.TransformerEncoderLayer(

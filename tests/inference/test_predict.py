@@ -10,7 +10,7 @@ from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.weights_io import save_network
 from motion import SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.formats import read
-from motion.kinematics import forward_kinematics
+from motion.kinematics import bone_lengths, forward_kinematics
 from motion.skeleton import SBU15
 from motion.transforms import heading_matrix
 from webdemo.inference import PredictRequest, PredictResult
@@ -52,11 +52,6 @@ def predict(engine: Engine, **asked: object) -> PredictResult:
     return result
 
 
-def bones(positions: np.ndarray) -> np.ndarray:
-    parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
-    return np.linalg.norm(positions[..., children, :] - positions[..., parents, :], axis=-1)
-
-
 @pytest.mark.parametrize("seconds", [0.5, 1.0, 4.0])
 def test_one_person_goes_on(predicting: Engine, seconds: float) -> None:
     clip = walker()
@@ -65,7 +60,7 @@ def test_one_person_goes_on(predicting: Engine, seconds: float) -> None:
     assert isinstance(motion, Clip) and motion.num_frames == 45 + round(30 * seconds)
     assert motion.positions[:45].tobytes() == clip.positions[:45].tobytes()
     assert result.past_frames == 45 and np.isfinite(motion.positions).all()
-    assert np.allclose(bones(motion.positions[45:]), bones(motion.positions[44]), atol=1e-4)
+    assert np.allclose(bone_lengths(motion.positions[45:]), bone_lengths(motion.positions[44]), atol=1e-4)
     steps = mean_steps(motion.positions)
     assert steps[44] <= steps[15:44].max() + 1e-6
     # Every second of a recursion begins as smoothly as the first.
@@ -159,8 +154,7 @@ def test_the_shipped_network_goes_on_moving_without_a_jump() -> None:
 
 
 def test_feet_that_stand_stay_where_the_past_left_them() -> None:
-    pose = SMPL22.rest_positions()
-    pose[:, 1] -= pose[:, 1].min()
+    pose = SMPL22.standing()
     lean = np.zeros_like(pose)
     lean[:, 0] = 0.05 * pose[:, 1]
     sway = np.sin(np.arange(30) / 8)[:, None, None]
@@ -172,7 +166,7 @@ def test_feet_that_stand_stay_where_the_past_left_them() -> None:
     moved = np.linalg.norm((made - past[:, -1:])[..., feet, :], axis=-1)
     assert np.linalg.norm((future - past[:, -1:])[..., feet, :], axis=-1).max() > 0.15
     assert moved[0, :20].max() < 0.02
-    assert np.allclose(bones(made), bones(future), atol=1e-4)
+    assert np.allclose(bone_lengths(made), bone_lengths(future), atol=1e-4)
     joined_up = np.concatenate([past, made], axis=1)
     assert mean_steps(joined_up)[0, 29] <= mean_steps(past).max() + 1e-6
     # Who floats, or does not move, is left as they are.

@@ -30,8 +30,7 @@ class Toy:
     label, tasks, takes, defaults = "Toy twins", ("generate", "react"), ("words", "actor"), {"steps": 3}
 
     def run(self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
-        rest = SMPL22.rest_positions()
-        rest = rest - [0, rest[:, 1].min(), 0]
+        rest = SMPL22.standing()
         sway = 0.1 * np.sin(np.arange(round(request.seconds * 30)) / 10)[:, None, None] * [1.0, 0.0, 0.0]
         pair = np.stack([rest + sway, rest + sway + [0.0, 0.0, 1.0]])
         yield timer.progress("sample", request.steps, request.steps)

@@ -31,9 +31,9 @@ print(seen[0], THREADS, CORES)
 @pytest.mark.parametrize(("running", "free"), [(1, 4), (2, 3), (4, 1), (30, 1), (0, 4)])
 def test_what_runs_is_counted(running: int, free: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(threads, "CORES", 4)
-    load = tmp_path / "loadavg"
-    load.write_text(f"0.10 0.20 0.30 {running}/345 6789\n")
-    assert threads.free_cores(load) == free
+    monkeypatch.setattr(threads, "_LOAD", tmp_path / "loadavg")
+    (tmp_path / "loadavg").write_text(f"0.10 0.20 0.30 {running}/345 6789\n")
+    assert threads.free_cores() == free
 
 
 @pytest.mark.parametrize(("compiled", "expected"), [(True, 1), (False, 3)])

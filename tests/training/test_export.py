@@ -25,8 +25,7 @@ def test_the_bank_holds_every_kind_of_beat_beside_the_families() -> None:
     kinds = [sum(c.startswith(word) for c in bank.captions) for word in ("Story", "Jump", "One", "They")]
     assert kinds == [BANK_PER_FAMILY, BANK_PER_ACTS, 1, 1]
     assert len(bank.captions) == len(bank.vectors) == sum(kinds)
-    ((_, nearest),) = bank.nearest(bank.vectors[bank.captions.index("One kneels.")], 1)
-    assert nearest == "One kneels."
+    assert bank.nearest(bank.vectors[bank.captions.index("One kneels.")])[1] == "One kneels."
 
 
 def test_weights_are_averaged_with_those_that_a_run_began_with() -> None:

@@ -82,7 +82,7 @@ class PredictionTrainer(Loop):
     """
 
     kind: str
-    """Kind of the predictor, as :func:`models.predictors.load_predictor` knows it."""
+    """Kind of the predictor, as :func:`webdemo.inference.pipelines.predictor.load_predictor` knows it."""
 
     def __init__(self, windows: Windows, settings: Any, out: Path, *, device: str = "cpu") -> None:
         self.windows, self.settings, self.out, self.device = windows, settings, out, device

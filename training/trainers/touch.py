@@ -14,9 +14,9 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
-from models.errors import Released
 from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
+from models.released import Released
 from models.text import TextConditioner
 from training.core.handedness import mirror_caption, mirrored
 from training.core.loop import fit, mixed_precision

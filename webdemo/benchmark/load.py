@@ -238,14 +238,13 @@ def goals_missed(figures: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def run_load(*, people: int, minutes: float, steps: int = 8, seed: int = 0) -> dict[str, Any]:
+def run_load(*, people: int, minutes: float, steps: int = 8) -> dict[str, Any]:
     """Starts ``python app.py`` on a free port of 127.0.0.1 and sends it the requests of many people.
 
     Args:
         people: number of people at once; each sends the next request when the result is there.
         minutes: duration, half of it beside the attackers; runs that are under way at its end are finished.
         steps: the most denoising steps that a job has; jobs differ in prompt, length, samples and steps.
-        seed: of the mix of jobs.
 
     Raises:
         InputError: where the numbers do not fit, or the server does not come up.
@@ -255,25 +254,25 @@ def run_load(*, people: int, minutes: float, steps: int = 8, seed: int = 0) -> d
     with tempfile.TemporaryDirectory(prefix="pas-de-deux-load-") as folder:
         with serving(Path(folder), queue=max(64, people)) as (url, server):
             wait_until(url, "healthz", server)
-            figures = asyncio.run(_load(url, people, minutes, steps, seed))
+            figures = asyncio.run(_load(url, people, minutes, steps))
         log = (Path(folder) / "log").read_text(encoding="utf-8")
     figures["log_lines_of_errors"] = log.count('"level": "error"')
     return figures | {"goals_missed": goals_missed(figures)}
 
 
-async def _load(url: str, people: int, minutes: float, steps: int, seed: int) -> dict[str, Any]:
+async def _load(url: str, people: int, minutes: float, steps: int) -> dict[str, Any]:
     calm, attacked = Tally(), Tally()
     limits = httpx.Limits(max_connections=None)
     async with httpx.AsyncClient(base_url=url, timeout=httpx.Timeout(60, read=None), limits=limits) as client:
         # The first run of each kind imports and prepares things, so it comes before memory is read.
-        await _crowd(client, Tally(), max(people, len(KINDS)), 0.0, steps, f"warm-up {seed}")
+        await _crowd(client, Tally(), max(people, len(KINDS)), 0.0, steps, "warm-up")
         await asyncio.sleep(REST_SECONDS)
         memory = await _memory(client)
-        took = await _crowd(client, calm, people, 30 * minutes, steps, f"{seed}")
+        took = await _crowd(client, calm, people, 30 * minutes, steps, "calm")
         await asyncio.sleep(REST_SECONDS)
         after = await _memory(client)
         end = attack_apart(url)
-        await _crowd(client, attacked, people, 30 * minutes, steps, f"attacked {seed}")
+        await _crowd(client, attacked, people, 30 * minutes, steps, "attacked")
         sent = end()
     return {
         "people": people,

@@ -25,6 +25,8 @@ from webdemo.inference.run import Result
 
 HERE = Path(__file__).parent
 RECORDED = HERE / "recorded.json"
+SEEDS = 2
+"""Motions of each sentence."""
 COLUMNS = ("planned", "network alone", "recorded")
 MEASURES: Mapping[str, tuple[str, str, float]] = {
     "standing_foot": ("standing foot, cm/s", "{:.1f}", 1.0),
@@ -55,12 +57,11 @@ def kinds() -> dict[str, tuple[Asked, ...]]:
     return {kind["name"]: tuple(Asked(**each) for each in kind["sentences"]) for kind in listed}
 
 
-def run_motion(*, steps: int = 8, seeds: int = 2) -> dict[str, Any]:
+def run_motion(*, steps: int = 8) -> dict[str, Any]:
     """Prints the table and gives its figures: ``{kind: {measure: {column: value}}}`` and the kind ``all``.
 
     Args:
         steps: DDIM steps.
-        seeds: motions of each sentence.
     """
     real = json.loads(RECORDED.read_text(encoding="utf-8"))
     people: dict[str, tuple[list[Naturalness], list[Naturalness]]] = {}
@@ -68,7 +69,7 @@ def run_motion(*, steps: int = 8, seeds: int = 2) -> dict[str, Any]:
     for kind, sentences in kinds().items():
         people[kind] = ([], [])
         for asked in sentences:
-            for seed in range(seeds):
+            for seed in range(SEEDS):
                 for measured, planned in zip(people[kind], (True, False), strict=True):
                     measured += _measured(_made(engine, asked, steps, seed, planned), asked.people)
     figures = {kind: _figures(measured, real.get(kind, {})) for kind, measured in people.items()}

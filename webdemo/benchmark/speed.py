@@ -18,7 +18,7 @@ import numpy as np
 from models.compiled import CORES
 from motion import FPS, SMPL22, Clip, Duet
 from webdemo.inference.engine import Engine
-from webdemo.inference.methods import methods
+from webdemo.inference.methods import by_class, methods
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.predict import PredictRequest
 
@@ -91,8 +91,7 @@ def measure_requests(engine: Any, request: GenerateRequest, repeats: int) -> dic
 
 def measure_classes(engine: Any, request: GenerateRequest, repeats: int) -> dict[str, float]:
     """Seconds of a class, and over those of a sentence of the same length and steps, run in turn."""
-    by_class = next(each.name for each in methods("generate") if "class" in each.takes)
-    classed = replace(request, prompt="shake hands", model=by_class)
+    classed = replace(request, prompt="shake hands", model=by_class().name)
     jobs = [partial(lambda asked: list(engine.run(asked)), asked) for asked in (classed, request)]
     jobs[0]()  # the first run prepares what later ones use
     pairs = [[timed(job, 1)[0] for job in jobs] for _ in range(repeats)]
@@ -119,8 +118,7 @@ def measure_prediction(engine: Any, repeats: int) -> dict[str, float]:
 
 def measure_reaction(engine: Any, seconds: float) -> dict[str, float]:
     """Milliseconds from an actor's frame to that of ReGenNet online, bones and feet included."""
-    rest = SMPL22.rest_positions()
-    still = Clip(np.repeat(rest[None] - [0, rest[:, 1].min(), 0], round(seconds * FPS), axis=0), FPS, SMPL22)
+    still = Clip(np.repeat(SMPL22.standing()[None], round(seconds * FPS), axis=0), FPS, SMPL22)
     asked = ReactRequest(actor=still, model="regennet", mode="online", steps=5)
     list(engine.live(asked))  # the first run loads what later ones use
     times = [frame.seconds for frame in engine.live(asked)]

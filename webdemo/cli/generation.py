@@ -10,7 +10,7 @@ from typing import Any
 
 from acts.plan import Plan, plan_of
 from motion import InputError
-from webdemo.inference.methods import AUTOMATIC, automatic, methods
+from webdemo.inference.methods import AUTOMATIC, automatic, by_class
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
@@ -42,7 +42,7 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
     """Runs a :class:`GenerateRequest` and writes its duets."""
     check_out(options.out)
     if options.label is not None:
-        options.model = next(m.name for m in methods("generate") if "class" in m.takes)
+        options.model = by_class().name
     fields = sampling_fields(options)
     words = options.prompt if options.label is None else options.label
     fields |= {"split": not options.no_split, "planned": not options.no_plan}

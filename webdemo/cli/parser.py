@@ -103,5 +103,5 @@ def sampling_fields(options: argparse.Namespace) -> dict[str, Any]:
     names = ("seed", "samples", "guidance", "steps", "damping", "sampler", "model")
     fields = {name: getattr(options, name) for name in names} | {"cleanup": not options.no_cleanup}
     if options.guidance is None:
-        fields["guidance"] = method(options.model).default("guidance", SamplingRequest.guidance)
+        fields["guidance"] = method(options.model).defaults.get("guidance", SamplingRequest.guidance)
     return fields

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from acts import read
-from motion import Duet, InputError
+from motion import InputError
 from motion.formats.recording import ImportChoices
 from webdemo.inference.requests.sampling import SETTINGS
 from webdemo.inference.story import SceneRequest, read_story, split_sentence
-from webdemo.inference.story.request import MOST_SECONDS
+from webdemo.inference.story.request import read_motion
 
 from .generation import check_out, run, write_result
 from .parser import add_reading, add_sampling, reading_choices, with_notes
@@ -43,7 +43,7 @@ def scene(options: argparse.Namespace) -> dict[str, Any]:
     choices = reading_choices(options)
     if choices != ImportChoices() and options.motion is None:
         raise InputError("--animation and --file-… say how a motion is read: give --motion as well, or leave them out.")
-    motion = _motion(options.motion, choices) if options.motion is not None else None
+    motion = read_motion(options.motion, choices) if options.motion is not None else None
     request = SceneRequest(**asked, motion=motion, start=options.start, end=options.end)
     written = write_result(run(request), options.out)
     return written if motion is None else with_notes(written, motion)
@@ -61,16 +61,6 @@ def _story(options: argparse.Namespace) -> dict[str, Any]:
         why = getattr(error, "strerror", None) or "it is not text in UTF-8"
         raise InputError(f"The story {options.story} cannot be read: {why}.") from None
     return read_story(text, options.story.parent)
-
-
-def _motion(path: Path, choices: ImportChoices) -> Duet:
-    from motion.formats import read
-    from motion.retarget import to_smpl
-
-    motion = read(path, longest=MOST_SECONDS, choices=choices)
-    if not isinstance(motion, Duet):
-        raise InputError(f"{path.name} holds one person: a scene goes on from a motion of two.")
-    return to_smpl(motion)
 
 
 # ---- reading -------------------------------------------------------------------------------------

@@ -98,7 +98,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
     scoring = Scoring(
         scored.name,
         scored.steps if options.steps is None else options.steps,
-        scored.default("guidance", SamplingRequest.guidance) if options.guidance is None else options.guidance,
+        scored.defaults.get("guidance", SamplingRequest.guidance) if options.guidance is None else options.guidance,
         options.damping,
         options.plain,
         options.zeros,

@@ -30,7 +30,7 @@ from webdemo.inference.finish.looks import as_given, enlarged, furnished, length
 from webdemo.inference.method import Pipeline
 from webdemo.inference.methods import WEIGHTS
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
-from webdemo.inference.requests.live import PARTNERS, LiveFrame, LivePartner, LiveTake
+from webdemo.inference.requests.live import LiveFrame, LivePartner, LiveTake, check_partner
 from webdemo.inference.requests.predict import PredictRequest
 from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
@@ -136,8 +136,7 @@ class Engine:
         Raises:
             InputError: if there is no such partner, or its weights are missing or altered.
         """
-        if name not in PARTNERS:
-            raise InputError(f"There is no live partner {name!r:.40}: choose {' or '.join(PARTNERS)}.")
+        check_partner(name)
         from webdemo.inference.live.agent import LiveAgent
         from webdemo.inference.live.partner_pipeline import ReactingPartner, warm_up
 

@@ -99,14 +99,10 @@ class Method:
     weights: str | None = None
     needs: tuple[str, ...] = ()
 
-    def default(self, name: str, otherwise: Any) -> Any:
-        """This method's best value for a field of a request, or the request's own default."""
-        return self.defaults.get(name, otherwise)
-
     @property
     def steps(self) -> int:
         """Denoising steps of a request that names none."""
-        return self.default("steps", DEFAULT_STEPS)
+        return int(self.defaults.get("steps", DEFAULT_STEPS))
 
     def installed(self, weights: Path) -> bool:
         """True if its weights are in the folder of all weights; nothing is loaded."""

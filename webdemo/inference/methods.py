@@ -10,7 +10,6 @@ import json
 import logging
 import os
 import threading
-from pathlib import Path
 
 from motion import InputError
 from webdemo.inference.built_in import BUILT_IN, REACTIONS_VARIABLE
@@ -81,10 +80,9 @@ def variants(task: Task) -> dict[str, Variant]:
     return {variant.key: variant for m in methods(task) for variant in m.variants}
 
 
-def installed(task: Task, weights: Path | None = None) -> tuple[Method, ...]:
+def installed(task: Task) -> tuple[Method, ...]:
     """The methods for a task whose weights are there; the task's default is always among them."""
-    folder = WEIGHTS if weights is None else weights
-    return tuple(m for i, m in enumerate(methods(task)) if i == 0 or m.installed(folder))
+    return tuple(m for i, m in enumerate(methods(task)) if i == 0 or m.installed(WEIGHTS))
 
 
 def failed() -> dict[str, str]:
@@ -148,10 +146,10 @@ def by_class() -> Method:
     return next(each for each in methods("generate") if "class" in each.takes)
 
 
-def installed_classes(weights: Path = WEIGHTS) -> list[str]:
+def installed_classes() -> list[str]:
     """Names of the classes; none where there are no weights."""
     try:
-        meta = json.loads((weights / str(by_class().weights) / "config.json").read_text())
+        meta = json.loads((WEIGHTS / str(by_class().weights) / "config.json").read_text())
         return list(map(str, meta["model"]["labels"]))
     except (OSError, ValueError, KeyError, TypeError):
         return []

@@ -5,6 +5,7 @@ import pytest
 
 from acts.staging.poses import lying
 from motion import SMPL22
+from motion.kinematics import bone_lengths
 from motion.metrics.quality import standing_foot
 from webdemo.inference.finish import cleanup
 from webdemo.inference.finish.cleanup import FollowingCleanup, _elbow_pole, clean_person, on_constant_bones
@@ -24,16 +25,11 @@ def trembling(frames: int = 60) -> np.ndarray:
     return rest + 0.004 * rng.normal(size=(frames, 22, 3))
 
 
-def lengths(positions: np.ndarray) -> np.ndarray:
-    parents, children = zip(*SMPL22.bones, strict=True)
-    return np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
-
-
 def test_bones_become_constant_and_wrists_stay() -> None:
     shaking = trembling()
     steady = on_constant_bones(shaking)
-    assert lengths(shaking).std(axis=0).max() > 0.002
-    np.testing.assert_allclose(lengths(steady), SMPL22.bone_lengths[1:].reshape(1, -1).repeat(60, 0), atol=1e-6)
+    assert bone_lengths(shaking).std(axis=0).max() > 0.002
+    np.testing.assert_allclose(bone_lengths(steady), SMPL22.bone_lengths[1:].reshape(1, -1).repeat(60, 0), atol=1e-6)
     assert np.linalg.norm(steady[:, WRISTS] - shaking[:, WRISTS], axis=-1).max() < 0.02
 
 

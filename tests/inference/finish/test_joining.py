@@ -3,13 +3,12 @@
 import numpy as np
 
 from motion import SMPL22
-from motion.kinematics import fit_rotations, forward_kinematics
+from motion.kinematics import bone_lengths, fit_rotations, forward_kinematics
 from motion.skeleton import FEET
 from motion.transforms import heading_matrix
 from webdemo.inference.finish.joining import PASSING, REACH, closed, joined, passing
 from webdemo.inference.pipelines.given import with_given
 
-PARENTS, CHILDREN = np.array(SMPL22.bones).T
 FRAMES = 90
 
 
@@ -22,10 +21,6 @@ def mover(shift: float = 0.0, speed: float = 0.4) -> np.ndarray:
         rotations[:, SMPL22.index(joint)] = np.stack([heading_matrix(a) for a in angle])
     pelvis = np.array([0.3 * shift, 1.3, 0.0]) + np.arange(FRAMES)[:, None] / 30 * [0, 0, speed]
     return forward_kinematics(rotations, pelvis)
-
-
-def lengths(positions: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(positions[:, CHILDREN] - positions[:, PARENTS], axis=-1)
 
 
 def jerk(positions: np.ndarray) -> np.ndarray:
@@ -41,7 +36,7 @@ def test_given_frames_are_led_to_without_a_jolt_on_the_same_bones() -> None:
     np.testing.assert_allclose(found[ends], given[ends], atol=1e-9)
     untouched = slice(30 + REACH, 75 - REACH)
     np.testing.assert_allclose(found[untouched], made[untouched], atol=1e-9)
-    np.testing.assert_allclose(lengths(found), lengths(made), atol=1e-6)
+    np.testing.assert_allclose(bone_lengths(found), bone_lengths(made), atol=1e-6)
     assert jerk(found).max() < 0.05 * jerk(hard).max()
 
 
@@ -65,7 +60,7 @@ def test_a_single_pose_is_passed_through_without_a_jolt() -> None:
     np.testing.assert_allclose(found[45], pose, atol=1e-9)
     away = np.abs(np.arange(FRAMES) - 45) > PASSING
     np.testing.assert_allclose(found[away | fixed], made[away | fixed], atol=1e-9)
-    np.testing.assert_allclose(lengths(found[40:45]), lengths(made[40:45]), atol=1e-6)
+    np.testing.assert_allclose(bone_lengths(found[40:45]), bone_lengths(made[40:45]), atol=1e-6)
     assert jerk(found)[35:55].max() < 0.3 * jerk(alone)[35:55].max()
     # Poses and given frames that are neighbours: what is held stays.
     close = passing(made, np.array([22, 45]), np.stack([made[22], pose]), fixed)
@@ -83,7 +78,7 @@ def test_a_loop_closes_in_place_and_speed_and_keeps_what_is_fixed() -> None:
     assert np.linalg.norm(speed, axis=-1).max() < 0.01
     np.testing.assert_array_equal(found[4], open_ended[4])
     np.testing.assert_allclose(found[REACH:-REACH], open_ended[REACH:-REACH], atol=1e-9)
-    np.testing.assert_allclose(lengths(found), lengths(open_ended), atol=1e-6)
+    np.testing.assert_allclose(bone_lengths(found), bone_lengths(open_ended), atol=1e-6)
 
 
 def dancer(seconds: float = 3.0, turn: float = 1.2) -> np.ndarray:
@@ -104,7 +99,7 @@ def test_what_turns_fast_is_not_thrown_around_where_it_joins() -> None:
     found = joined(made, ends, made[ends])
     hard = np.linalg.norm(np.diff(made, n=2, axis=0), axis=-1).max()
     assert np.linalg.norm(np.diff(found, n=2, axis=0), axis=-1).max() < 1.5 * hard
-    np.testing.assert_allclose(lengths(found), lengths(made), atol=1e-6)
+    np.testing.assert_allclose(bone_lengths(found), bone_lengths(made), atol=1e-6)
 
 
 def test_a_dance_that_turns_closes_without_a_jolt_and_only_there() -> None:
@@ -116,4 +111,4 @@ def test_a_dance_that_turns_closes_without_a_jolt_and_only_there() -> None:
     assert np.linalg.norm(closing, axis=-1).max() < 0.01
     assert np.linalg.norm(closing.sum(0), axis=-1).max() < 0.01
     np.testing.assert_array_equal(found[REACH:-REACH], made[REACH:-REACH])
-    np.testing.assert_allclose(lengths(found), lengths(made), atol=1e-6)
+    np.testing.assert_allclose(bone_lengths(found), bone_lengths(made), atol=1e-6)

@@ -54,8 +54,7 @@ def test_a_path_on_the_floor_is_where_it_was_drawn(engine: Engine) -> None:
 
 
 def test_a_childs_pose_is_asked_for_as_an_adults() -> None:
-    rest = SMPL22.rest_positions()
-    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    rest = SMPL22.standing()
     pose = Pose("b", 1.0, CHILD * rest + [0.5, 0.0, 0.0])
     request = SceneRequest(beats=(Beat("A man waves at a girl.", seconds=3.0),), poses=(pose,), **QUICK)
     (large,) = enlarged(request).poses

@@ -17,7 +17,7 @@ FRAMES = 180
 
 def _still(gap: float = 1.4) -> np.ndarray:
     """Two people who stand face to face without moving: (2, T, 22, 3) float32."""
-    pose = SMPL22.rest_positions() - SMPL22.rest_positions()[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    pose = SMPL22.standing()
     other = pose @ heading_matrix(np.pi).T + np.array([0.0, 0.0, gap])
     return np.tile(np.stack([pose, other])[:, None], (1, FRAMES, 1, 1)).astype(np.float32)
 

@@ -17,8 +17,7 @@ from .test_partner import NOTHING, STANDING, Recorded, Scripted
 
 J = SMPL22.index
 LONG = 400
-PERSON = SMPL22.rest_positions() - SMPL22.rest_positions()[0] * [1, 0, 1]
-PERSON = PERSON - [0, PERSON[:, 1].min(), 0]
+PERSON = SMPL22.standing() - SMPL22.rest_positions()[0] * [1, 0, 1]
 
 
 def bent(wrists: dict[str, np.ndarray], frames: int) -> np.ndarray:

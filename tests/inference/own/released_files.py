@@ -16,6 +16,7 @@ from models.regennet.network import ReGenNet, ReGenNetConfig
 from models.text.clip import ClipTextEncoder, ClipTower
 from motion import SMPL22
 from motion.representation import encode_person
+from webdemo.inference import Engine, GenerateRequest, ReactRequest, Result
 
 MERGES = ("t w", "tw o</w>", "p e", "pe o", "w a", "wa v", "wav e</w>")
 
@@ -37,8 +38,7 @@ def drawn(module: nn.Module, spread: float = 0.05) -> dict[str, Tensor]:
 
 def normaliser() -> tuple[np.ndarray, np.ndarray]:
     """Mean and standard deviation (262,) of a person who stands at the origin."""
-    rest = SMPL22.rest_positions()
-    rest = rest - np.array([0.0, rest[:, 1].min(), 0.0])
+    rest = SMPL22.standing()
     numbers = encode_person(np.repeat(rest[None], 3, axis=0))
     return numbers[0], np.full(262, 0.1, dtype=np.float32)
 
@@ -104,3 +104,10 @@ def write_bigraphdiff(path: Path) -> None:
     unused = {"clip.visual.proj": (2, 2), "temporal_decoder_blocks.0.ffn.linear1.weight": (2, 2)}
     state |= {name: torch.zeros(shape) for name, shape in unused.items()}
     torch.save({"encoder": state, "ep": 3, "opt_encoder": {"state": {}}}, path)
+
+
+def result_of(engine: Engine, request: GenerateRequest | ReactRequest) -> Result:
+    """The result of a request."""
+    *_, last = engine.run(request)
+    assert isinstance(last, Result)
+    return last

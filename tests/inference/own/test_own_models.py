@@ -13,9 +13,9 @@ import torch
 
 from motion import InputError
 from motion.formats import read
-from tests.inference.own.released_files import write_intergen
+from tests.inference.own.released_files import result_of, write_intergen
 from webdemo import cli
-from webdemo.inference import Engine, GenerateRequest, ReactRequest, Result
+from webdemo.inference import Engine, GenerateRequest, ReactRequest
 from webdemo.inference.methods import failed, method, register_settings
 from webdemo.inference.own import entries, released
 from webdemo.inference.pipelines import intergen
@@ -61,12 +61,6 @@ def why(name: str) -> str:
         GenerateRequest(prompt="Two people wave.", model=name)
     assert str(refused.value) == sentence and "\n" not in sentence
     return sentence
-
-
-def result_of(engine: Engine, request: GenerateRequest | ReactRequest) -> Result:
-    *_, last = engine.run(request)
-    assert isinstance(last, Result)
-    return last
 
 
 def test_released_files_become_a_motion_in_the_shell(

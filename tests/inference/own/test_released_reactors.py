@@ -11,8 +11,14 @@ import pytest
 from models.regennet.released import decode, encode
 from motion import Clip, Duet, InputError
 from motion.formats import read
-from tests.inference.own.released_files import write_bigraphdiff, write_interformer, write_regennet, write_vocabulary
-from webdemo.inference import Engine, GenerateRequest, ReactRequest, Result
+from tests.inference.own.released_files import (
+    result_of,
+    write_bigraphdiff,
+    write_interformer,
+    write_regennet,
+    write_vocabulary,
+)
+from webdemo.inference import Engine, GenerateRequest, ReactRequest
 from webdemo.inference.methods import failed, method, register_settings, variants
 from webdemo.inference.own import entries
 
@@ -63,12 +69,6 @@ def actor() -> Clip:
     duet = read(ROOT / "static" / "examples" / "wave.npz")
     assert isinstance(duet, Duet)
     return duet.a.cut(0, 45)
-
-
-def result_of(engine: Engine, request: GenerateRequest | ReactRequest) -> Result:
-    *_, last = engine.run(request)
-    assert isinstance(last, Result)
-    return last
 
 
 def test_regennets_rotations_hold_a_motion(actor: Clip) -> None:

@@ -5,14 +5,10 @@ from __future__ import annotations
 import pytest
 import torch
 
-from models.bigraphdiff import BiGraphDiff, BiGraphDiffConfig, from_released
+from models.bigraphdiff import BiGraphDiff, from_released
 from models.bigraphdiff import network as bigraphdiff
 from models.errors import WeightsError
 from tests.models.reference_arrays import Reference, assert_equal
-
-SMALL = BiGraphDiffConfig(
-    input_features=6, latent_dim=32, ff_size=16, num_layers=2, num_heads=2, text_dim=8, max_frames=12, num_nodes=4
-)
 
 
 @pytest.fixture(scope="module")
@@ -82,13 +78,6 @@ def test_the_text_side_reads_the_end_of_text(whole):
     x = side.text_ln(x)
     assert_equal(text, x)
     assert_equal(vector, torch.stack([x[0, 6], x[1, 3]]))
-
-
-def inputs(batch: int = 2, length: int = 9):
-    generator = torch.Generator().manual_seed(1)
-    x = torch.randn(batch, length, 12, generator=generator)
-    text = torch.randn(batch, 5, 8, generator=generator)
-    return x, torch.tensor([3, 800])[:batch], text, text.mean(1)
 
 
 def test_other_weights_are_refused():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import astuple, replace
 
-import numpy as np
 import pytest
 import torch
 from torch import nn
@@ -12,12 +11,9 @@ from torch import nn
 from models.mawgan.losses import MAWGANLossWeights
 from models.mawgan.network import Critic, MAWGANConfig, PredictiveMAWGAN, to_curves
 from models.mawgan.srvf import exp_map, inner, log_map, norm, to_srvf
+from tests.models.mawgan.test_losses import poses
 
 SMALL = MAWGANConfig(joints=5, past=8, future=12, fc=64, channels=(16, 8, 8, 4), critic=(4, 4, 4), critic_fc=8)
-
-
-def poses(seed: int, *size: int) -> torch.Tensor:
-    return torch.from_numpy(np.random.default_rng(seed).normal(size=size)).float()
 
 
 def motion(seed: int, count: int = 3) -> torch.Tensor:

@@ -10,8 +10,8 @@ import torch
 
 from models.mawgan.network import MAWGANConfig, PredictiveMAWGAN
 from models.motion_mlp import MotionMLP, MotionMLPConfig
-from models.predictors import load_predictor
 from models.weights_io import save_network
+from webdemo.inference.pipelines.predictor import load_predictor
 
 SMALL = MotionMLPConfig(joints=4, past=10, future=8, past_coefficients=5, future_coefficients=4, width=16, blocks=1)
 

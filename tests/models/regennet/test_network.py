@@ -78,7 +78,7 @@ def test_the_stream_gives_the_frames_of_the_whole_motion(name):
 def test_an_offline_network_cannot_stream():
     _, network = load("regennet_offline")
     with pytest.raises(StreamError, match="choose online weights"):
-        ReactionStream(network)
+        ReactionStream(network, steps=1, batch=1, action=None, max_frames=1)
 
 
 def test_other_weights_are_refused():

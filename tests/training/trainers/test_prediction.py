@@ -11,7 +11,6 @@ import pytest
 import torch
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
-from models.predictors import load_predictor
 from models.weights_io import save_network
 from motion import SMPL22, InputError
 from motion.transforms import heading
@@ -19,6 +18,7 @@ from training.evaluate import prediction as product
 from training.trainers import mawgan
 from training.trainers import motion_mlp as mlp
 from training.trainers.prediction import PredictionTrainer, Windows
+from webdemo.inference.pipelines.predictor import load_predictor
 
 MLP = mlp.Settings(
     past=10,

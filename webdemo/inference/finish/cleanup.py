@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from acts.staging.score import Score
-from motion import FPS, SMPL22, Duet
+from motion import FPS, Duet
 from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import pivoting, stepping
-from motion.kinematics import project_to_skeleton
-from motion.limbs import open_limb, solve_two_bones, steadied
+from motion.kinematics import bone_lengths, bone_vectors, chained, project_to_skeleton
+from motion.limbs import ankle_moved, open_limb, solve_two_bones, steadied
 from motion.metrics import compare
 from motion.skeleton import ARMS, LEGS
 from motion.smoothing import eased_marks, least_jerk, smoothstep
@@ -20,7 +20,7 @@ from motion.touch.apart import bodies_apart, out_of_the_way
 from motion.touch.arms import arms_apart, embraced
 from motion.touch.hands import backs_straight, hands_clasped, palms_met
 from motion.transforms import facing
-from motion.vectors import Array
+from motion.vectors import Array, unit
 from webdemo.inference.requests import ReactRequest
 from webdemo.inference.requests.actor import ROLES
 from webdemo.inference.requests.plans import BeatFinish
@@ -53,6 +53,7 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
 
     Args:
         positions: (T, 22, 3) metres as a network gave them.
+        fps: frames a second.
 
     Returns:
         (T, 22, 3) metres.
@@ -110,16 +111,9 @@ def on_constant_bones(positions: Array) -> Array:
 
 def _steady_bones(positions: Array) -> Array:
     """Positions (T, 22, 3) whose bones turn smoothly: a trunk that is fitted to single frames jumps where it folds."""
-    parents, children = np.array(SMPL22.bones).T
-    bones = positions[:, children] - positions[:, parents]
-    calm = least_jerk(bones, np.full(len(bones), _CALM))
-    calm *= np.linalg.norm(bones, axis=-1, keepdims=True) / np.maximum(
-        np.linalg.norm(calm, axis=-1, keepdims=True), 1e-9
-    )
-    result = np.array(positions)
-    for (parent, child), bone in zip(SMPL22.bones, np.moveaxis(calm, 1, 0), strict=True):
-        result[:, child] = result[:, parent] + bone
-    return result
+    bones = bone_vectors(positions)
+    calm = unit(least_jerk(bones, np.full(len(bones), _CALM)))
+    return chained(positions[:, 0], calm * bone_lengths(positions)[..., None])
 
 
 def _limbs_back(result: Array, target: Array, *, soft: float = _SOFT) -> Array:
@@ -130,12 +124,8 @@ def _limbs_back(result: Array, target: Array, *, soft: float = _SOFT) -> Array:
         share = open_limb(*limb) if soft else 1.0
         goal = result[:, wrist] + share * (target[:, wrist] - result[:, wrist])
         result[:, elbow], result[:, wrist] = solve_two_bones(*limb, goal, _elbow_pole(forward), soft=soft)
-    for hip, knee, ankle, toe in LEGS:
-        foot = result[:, toe] - result[:, ankle]
-        result[:, knee], result[:, ankle] = solve_two_bones(
-            result[:, hip], result[:, knee], result[:, ankle], target[:, ankle], forward, soft=soft
-        )
-        result[:, toe] = result[:, ankle] + foot
+    for leg in LEGS:
+        ankle_moved(result, leg, target[:, leg[2]], forward, soft=soft)
     return result
 
 
@@ -181,14 +171,12 @@ class FollowingCleanup:
         """
         result = on_constant_bones(np.asarray(frame, dtype=np.float64)[None])[0]
         forward = facing(result)
-        for side, (hip, knee, ankle, toe) in enumerate(LEGS):
-            foot = result[toe] - result[ankle]
+        for side, (*_, ankle, toe) in enumerate(LEGS):
             shift = self._correction(side, result[toe], float(contacts[2 * side : 2 * side + 2].max()))
             # Neither end of a foot goes below the floor.
             sunk = max(0.0, -(result[toe, 1] + shift[1]), 0.03 - (result[ankle, 1] + shift[1]))
             goal = result[ankle] + shift + np.array([0.0, sunk, 0.0])
-            result[knee], result[ankle] = solve_two_bones(result[hip], result[knee], result[ankle], goal, forward)
-            result[toe] = result[ankle] + foot
+            ankle_moved(result, LEGS[side], goal, forward)
         return result
 
     def _correction(self, side: int, toe: Array, score: float) -> Array:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from motion import FPS, SMPL22
 from motion.cleaning import foot_contacts, plant_feet
-from motion.kinematics import followed_rotations, rotation_matrices
+from motion.kinematics import bone_vectors, chained, followed_rotations, rotation_matrices
 from motion.vectors import Array
 
 Frames = NDArray[np.integer]
@@ -108,11 +108,10 @@ def _turned(
     change = rotation_matrices(smooth.reshape(-1, *turns.shape[1:])) @ np.swapaxes(
         rotation_matrices(turns[free]), -1, -2
     )
-    turned, old = positions.copy(), positions[free]
-    turned[free, 0] = _smoothed(positions[:, 0], free, away, closes=closes, reach=reach, slack=slack)[free]
-    for parent, joint in SMPL22.bones:
-        bone = (change[:, parent] @ (old[:, joint] - old[:, parent])[..., None])[..., 0]
-        turned[free, joint] = turned[free, parent] + bone
+    turned = positions.copy()
+    roots = _smoothed(positions[:, 0], free, away, closes=closes, reach=reach, slack=slack)[free]
+    bones = change[:, SMPL22.parents[1:]] @ bone_vectors(positions[free])[..., None]
+    turned[free] = chained(roots, bones[..., 0])
     return turned
 
 

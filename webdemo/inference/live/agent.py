@@ -1,12 +1,12 @@
 """The virtual agent of Chopin's thesis (chapter 5) in front of a stream: it sees only what has happened so far.
 
 Every half second it takes the last second of the person, predicts two more and recognises the gesture (see
-:mod:`.agent`). Until it is sure, it stands with the person. When it is sure, the online ReGenNet receives the
-sentence of the gesture and answers frame by frame; the thesis plays a prerecorded motion instead. A second gesture
-interrupts the answer, and a person who turns away ends it. Where a camera sees the person's face, the agent answers
-only if it is addressed: if the face points to the camera, where the agent is seen, or to the agent in the scene. While
-it does not answer, the agent turns to the person and looks at them; it leaves a person who turns their back on it for
-long, and comes back when they turn round.
+:mod:`webdemo.inference.pipelines.agent`). Until it is sure, it stands with the person. When it is sure, the online
+ReGenNet receives the sentence of the gesture and answers frame by frame; the thesis plays a prerecorded motion instead.
+A second gesture interrupts the answer, and a person who turns away ends it. Where a camera sees the person's face, the
+agent answers only if it is addressed: if the face points to the camera, where the agent is seen, or to the agent in the
+scene. While it does not answer, the agent turns to the person and looks at them; it leaves a person who turns their
+back on it for long, and comes back when they turn round.
 """
 
 from __future__ import annotations

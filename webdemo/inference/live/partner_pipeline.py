@@ -48,9 +48,8 @@ FARTHEST = 6.0
 
 def warm_up(partner: LivePartner) -> None:
     """Has a partner answer a person who stands still for two seconds: the first passes take longest."""
-    standing = SMPL22.rest_positions()
     for _ in range(2 * int(FPS)):
-        partner.step(standing - [0, standing[:, 1].min(), 0])
+        partner.step(SMPL22.standing())
 
 
 class Segment:

@@ -19,11 +19,12 @@ from numpy.typing import NDArray
 from acts.things.furniture import BODIES, LEAVES, TAKES, placed_leaf
 from motion import FPS, SMPL22
 from motion.limbs import solve_two_bones
+from motion.metrics.interaction import palms
 from motion.smoothing import smoothstep
 from motion.steering import Goal
 from motion.things import Thing, shape
 from motion.transforms import facing
-from motion.vectors import FLAT, Array, unit
+from motion.vectors import FLAT, Array, heading_of
 
 PLACES = {"window": (0.0, 2.2), "hi-fi": (2.0, 0.9)}
 """Metres from where the agent first stands, to its left and behind it, as seen by a person facing it."""
@@ -40,8 +41,6 @@ FRAMES = 30
 """Frames, a second, over which a complaint must last."""
 MOST = 0.85
 """Share of these frames in which it must be seen."""
-PALM = 0.08
-"""Metres from a wrist to the palm, along the forearm."""
 AT_HEAD, APART = 0.26, 0.21
 """Metres from a palm to the joint of the head at most, and between wrists at the ears; at the eyes they are closer."""
 AT_ARM, RUBS = 0.17, 0.1
@@ -93,7 +92,7 @@ class Room:
         begin = agent[0] * FLAT
         self._places = {kind: begin + x * left + z * back for kind, (x, z) in PLACES.items()}
         fronts = {"window": -back, "hi-fi": -left}
-        self._yaws = {kind: float(np.arctan2(front[0], front[2])) for kind, front in fronts.items()}
+        self._yaws = {kind: float(heading_of(front)) for kind, front in fronts.items()}
         self._fronts = fronts
         self.open = {"window": 1.0, "curtain": 1.0, "hi-fi": 1.0}
         self.errand: Errand | None = None
@@ -200,25 +199,25 @@ def complaint(seen: Array, fps: float) -> Complaint | None:
     if len(seen) < FRAMES:
         return None
     last = np.asarray(seen[-FRAMES:], dtype=np.float64)
-    palms = np.stack([_palm(last, side) for side in _SIDES])
-    speeds = np.linalg.norm(np.gradient(palms - last[:, _j("spine3")], axis=1), axis=-1) * fps
-    head, high = last[:, _j("head")], palms[..., 1] > last[:, _j("neck"), 1]
-    at_head = ((np.linalg.norm(palms - head, axis=-1) < AT_HEAD) & high).all(axis=0)
+    hands = np.moveaxis(palms(last), 1, 0)
+    speeds = np.linalg.norm(np.gradient(hands - last[:, _j("spine3")], axis=1), axis=-1) * fps
+    head, high = last[:, _j("head")], hands[..., 1] > last[:, _j("neck"), 1]
+    at_head = ((np.linalg.norm(hands - head, axis=-1) < AT_HEAD) & high).all(axis=0)
     wrists = [last[:, _j(f"{side}_wrist")] for side in _SIDES]
     apart = np.linalg.norm(wrists[0] - wrists[1], axis=-1) > APART
     if _mostly(at_head & apart):
         return LOUD
-    ahead = np.einsum("stj,tj->st", palms - head, np.stack([facing(pose) for pose in last])) > 0.04
+    ahead = np.einsum("stj,tj->st", hands - head, np.stack([facing(pose) for pose in last])) > 0.04
     if _mostly(at_head & ~apart & ahead.all(axis=0)):
         return BRIGHT
-    arms = np.stack([_to_arm(palms[i], last, _SIDES[1 - i]) for i in (0, 1)])
+    arms = np.stack([_to_arm(hands[i], last, _SIDES[1 - i]) for i in (0, 1)])
     if _mostly(arms.max(axis=0) < AT_ARM) and speeds.mean() > RUBS:
         return COLD
     if _holds_nose(last, fps):
         return SMELLS
-    neck = np.linalg.norm(palms - last[:, _j("neck")], axis=-1) < AT_NECK
-    fans = (neck & (palms[..., 1] < head[:, 1] + 0.1)).mean(axis=1) >= MOST
-    to_and_fro = np.array([_turns(course - last[:, _j("spine3")]) >= TURNS for course in palms])
+    neck = np.linalg.norm(hands - last[:, _j("neck")], axis=-1) < AT_NECK
+    fans = (neck & (hands[..., 1] < head[:, 1] + 0.1)).mean(axis=1) >= MOST
+    to_and_fro = np.array([_turns(course - last[:, _j("spine3")]) >= TURNS for course in hands])
     return HOT if (fans & to_and_fro & (speeds.mean(axis=1) > FANS)).any() else None
 
 
@@ -253,11 +252,6 @@ def _mostly(mask: NDArray[np.bool_]) -> bool:
 
 def _j(name: str) -> int:
     return SMPL22.index(name)
-
-
-def _palm(poses: Array, side: str) -> Array:
-    wrist = poses[:, _j(f"{side}_wrist")]
-    return wrist + PALM * unit(wrist - poses[:, _j(f"{side}_elbow")])
 
 
 def _to_arm(palms: Array, poses: Array, side: str) -> Array:

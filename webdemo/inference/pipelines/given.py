@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
@@ -227,14 +228,8 @@ def _every_frame(frames: Array, poses: Array) -> tuple[Array, Array]:
     """Frames (N,) in order and their poses (N, 22, 3), with those between them along cubic Hermite splines."""
     if len(frames) < 2:
         return frames, poses
-    slopes = np.gradient(poses, frames, axis=0)
     time = np.arange(frames[0], frames[-1] + 1)
-    i = (np.searchsorted(frames, time, side="right") - 1).clip(max=len(frames) - 2)
-    gap = (frames[i + 1] - frames[i])[:, None, None]
-    s = (time - frames[i])[:, None, None] / gap
-    ahead = s * s * (3 - 2 * s)
-    bends = s * (1 - s) * gap * ((1 - s) * slopes[i] - s * slopes[i + 1])
-    return time, (1 - ahead) * poses[i] + ahead * poses[i + 1] + bends
+    return time, scipy.interpolate.CubicHermiteSpline(frames, poses, np.gradient(poses, frames, axis=0))(time)
 
 
 def directed(model: DuetSpace, frames: int, parts: Sequence[Part], strictness: float = 0.0) -> Scene:

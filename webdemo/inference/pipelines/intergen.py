@@ -147,7 +147,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             return Conditioning(self.model.no_condition(), 1.0)
         condition, vector = self.condition(prompt, alone)
         (touch,) = self.model.touches(condition)
-        cosine, nearest = self.bank.nearest(vector)[0]
+        cosine, nearest = self.bank.nearest(vector)
         far = cosine < self.bank.far and not plan.acts
         return Conditioning(condition, guidance, touch, (_FAR.format(nearest),) if far else ())
 

@@ -26,7 +26,7 @@ from models.weights_io import WeightsFolder
 from motion import FPS, SMPL22, Clip, Duet, InputError
 from motion.formats import read
 from motion.transforms import Placement, heading, heading_matrix, resample
-from motion.vectors import Array
+from motion.vectors import FLAT, Array
 from webdemo.inference.built_in import REACTIONS_VARIABLE
 from webdemo.inference.finish.cleanup import clean_person
 from webdemo.inference.requests import GenerateRequest, ReactRequest
@@ -110,11 +110,11 @@ class Bank:
         example, warped = (1 - share) * pair[:, lower] + share * pair[:, upper]
         if first_pose is not None:
             warped = first_pose + warped - warped[:1]
-        way = pair[:, :, :1] * [1, 0, 1]
+        way = pair[:, :, :1] * FLAT
         beside = (way[1] - way[0]) @ heading_matrix(heading(pair[0]))
         kept = 1 / (1 + beside.var(axis=0).sum() / max(way[1].var(axis=0).sum(), 1e-9))
         angles = _calm(np.unwrap(heading(actor) - heading(example)))
-        there, here = (_calm(person[:, 0] * [1, 0, 1])[:, None] for person in (actor, example))
+        there, here = (_calm(person[:, 0] * FLAT)[:, None] for person in (actor, example))
         turned = (warped - here) @ np.swapaxes(heading_matrix(kept * (angles - angles[0])), -1, -2)
         return np.asarray(turned + here + kept * (there - here - (there - here)[0]))
 
@@ -127,7 +127,7 @@ def _calm(values: Array) -> Array:
 def _seen(actor: Array) -> Array:
     """(16, 135) of an actor (T, 22, 3): poses and speeds, as seen by somebody who faces with them, and places."""
     speeds = np.diff(actor, axis=0, append=actor[-1:]) * FPS * _AHEAD
-    turned = np.concatenate([actor - actor[:, :1] * [1, 0, 1], speeds], axis=1) @ heading_matrix(heading(actor))
+    turned = np.concatenate([actor - actor[:, :1] * FLAT, speeds], axis=1) @ heading_matrix(heading(actor))
     every = np.concatenate([turned.reshape(len(actor), -1), actor[:, 0]], axis=-1)
     return every[np.linspace(0, len(actor) - 1, MOMENTS).round().astype(int)]
 

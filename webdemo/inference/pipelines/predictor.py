@@ -8,11 +8,14 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from models.predictors import Predictor, load_predictor
-from motion import FPS, SMPL22, stacked_positions
+from models.mawgan.network import PredictiveMAWGAN
+from models.motion_mlp import MotionMLP
+from models.weights_io import WeightsFolder, load_network
+from motion import FPS, stacked_positions
 from motion.cleaning import foot_contacts, plant_feet
+from motion.kinematics import bone_lengths, bone_vectors, chained
 from motion.transforms import heading, heading_matrix
-from motion.vectors import Array, unit
+from motion.vectors import FLAT, Array, unit
 from webdemo.inference.requests.predict import PredictRequest, mean_steps, predicted
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
@@ -27,6 +30,17 @@ _BLEND = 5
 """Frames over which a correction fades in and out."""
 _FLOOR = 0.1
 """Metres from 0 within which the lowest that a person was must lie to be the floor that they stand on."""
+
+
+Predictor = MotionMLP | PredictiveMAWGAN
+"""A network that continues positions: (B, past, J, 3) metres → (B, future, J, 3), sizes as in its ``config``."""
+
+
+def load_predictor(folder: Path) -> tuple[Predictor, WeightsFolder]:
+    """A predictor in float32, eval mode, and its weights folder; raises WeightsError as :func:`load_network` does."""
+    if WeightsFolder(folder).meta.get("kind") == "mlp":
+        return load_network(folder, MotionMLP)
+    return load_network(folder, PredictiveMAWGAN)
 
 
 def without_jump(past: Array, future: Array, largest: Array) -> Array:
@@ -44,8 +58,8 @@ def without_jump(past: Array, future: Array, largest: Array) -> Array:
     return future - fade[:, None, None] * excess[:, None]
 
 
-def joined(past: Array, future: Array) -> Array:
-    """Fits a future (P, F, 22, 3) to its past.
+def fitted_to_past(past: Array, future: Array) -> Array:
+    """A future (P, F, 22, 3) that goes on from its past.
 
     The result keeps the bone lengths of the last pose, its first step is no larger than the largest of the past, and
     it does not sink below the lowest point of the past.
@@ -64,12 +78,8 @@ def joined(past: Array, future: Array) -> Array:
 
 def with_bones_of(pose: Array, positions: Array) -> Array:
     """Positions (P, T, 22, 3) with the bone lengths of a pose (P, 22, 3): same root, same directions."""
-    result = np.array(positions, dtype=np.float64)
-    for parent, child in SMPL22.bones:
-        length = np.linalg.norm(pose[:, child] - pose[:, parent], axis=-1)[:, None, None]
-        bone = positions[:, :, child] - positions[:, :, parent]
-        result[:, :, child] = result[:, :, parent] + length * unit(bone)
-    return result
+    lengths = bone_lengths(pose)[:, None, :, None]
+    return chained(positions[:, :, 0], lengths * unit(bone_vectors(positions)))
 
 
 def above_floor(past: Array, future: Array) -> Array:
@@ -159,7 +169,7 @@ class PredictorPipeline:
         local, turn, shift = to_last_pose(past)
         with torch.no_grad():
             made = self.predictor(torch.from_numpy(local.astype(np.float32))).numpy()
-        return joined(past, to_world(made.astype(np.float64), turn, shift))
+        return fitted_to_past(past, to_world(made.astype(np.float64), turn, shift))
 
     def run(self, request: PredictRequest, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`PredictResult` without a manifest."""
@@ -187,7 +197,7 @@ def to_last_pose(positions: Array, frame: int = -1) -> tuple[Array, Array, Array
         :func:`to_world`.
     """
     pose = positions[..., frame, :, :].astype(np.float64)
-    shift = pose[..., 0, :] * np.array([1.0, 0.0, 1.0])
+    shift = pose[..., 0, :] * FLAT
     turn = heading_matrix(-heading(pose))
     return (positions - shift[..., None, None, :]) @ np.swapaxes(turn, -1, -2)[..., None, :, :], turn, shift
 

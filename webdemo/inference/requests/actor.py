@@ -17,6 +17,7 @@ import numpy as np
 from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.formats import ImportChoices
 from motion.formats.importing import import_motion
+from motion.kinematics import bone_lengths
 from motion.retarget import to_smpl
 from motion.transforms import resample
 from motion.vectors import Array
@@ -162,9 +163,7 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
         )
     check_length(clip, seconds)
     actor = at_30_fps(clip)
-    parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
-    lengths = np.linalg.norm(actor.positions[:, children] - actor.positions[:, parents], axis=-1)
-    size = float(lengths.sum(-1).mean() / SMPL22.bone_lengths[children].sum())
+    size = float(bone_lengths(actor.positions).sum(-1).mean() / SMPL22.bone_lengths.sum())
     if not _BODY_SIZES[0] <= size <= _BODY_SIZES[1]:
         raise InputError(f"The actor's bones are {size:.3g} times as long as an adult's: give positions in metres.")
     if np.abs(actor.positions).max() > _FARTHEST:

@@ -26,6 +26,12 @@ SHORTEST = 1.0
 """Seconds: with less there is nothing to measure."""
 
 
+def check_partner(name: str) -> None:
+    """Raises InputError for what is none of :data:`PARTNERS`."""
+    if name not in PARTNERS:
+        raise InputError(f"There is no live partner {name!r:.40}: choose {' or '.join(PARTNERS)}.")
+
+
 @dataclass(frozen=True)
 class LiveFrame:
     """One frame of a live reaction.
@@ -63,8 +69,7 @@ class LiveTake:
     prompt: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
-        if self.model not in PARTNERS:
-            raise InputError(f"There is no live partner {self.model!r:.40}: choose {' or '.join(PARTNERS)}.")
+        check_partner(self.model)
         if self.actor.positions.shape != self.reactor.positions.shape:
             raise InputError("The two people of a live stream must have as many frames and joints.")
         if self.actor.num_frames < SHORTEST * self.actor.fps:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from motion import FPS, SMPL22, InputError
-from motion.kinematics import swing
+from motion.kinematics import bone_lengths, swing
 from motion.vectors import Array, unit
 from webdemo.inference.requests.actor import ROLES, check_pose
 from webdemo.inference.requests.paths import FLOOR, MOST_SPEED, FloorPath
@@ -52,9 +52,7 @@ class Pose:
                 f"{total:g} s: give a time in it."
             )
         positions = check_pose(self.positions, "A pose")
-        parents, children = np.array(SMPL22.bones).T
-        lengths = np.linalg.norm(positions[children] - positions[parents], axis=-1)
-        if (np.abs(lengths / np.asarray(SMPL22.bone_lengths)[children] - 1) > 0.3).any():
+        if (np.abs(bone_lengths(positions) / SMPL22.bone_lengths[1:] - 1) > 0.3).any():
             raise InputError(f"The pose of person {self.person} at {self.seconds:g} s has bones of other lengths.")
         if (wrong := bent_wrong(positions)) is not None:
             raise InputError(

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from acts.staging.score import Score
 from acts.staging.stage import scores_of
 from acts.staging.window import AFTER, MOST_FRAMES, PAST, Window
 from motion import FPS, Duet, InputError
+from motion.formats import ImportChoices, read
 from webdemo.inference import methods
 from webdemo.inference.requests.paths import FloorPath, path_of, timed_paths
 from webdemo.inference.requests.plans import KeptPlan
@@ -37,6 +39,14 @@ _HELD_EVERY = 0.5
 """Seconds between two moments at which a person who has walked a path is held to its end."""
 
 
+def read_motion(path: Path, choices: ImportChoices) -> Duet:
+    """The motion in a file that a scene goes on from; raises InputError for one that is not of two people."""
+    given = read(path, longest=MOST_SECONDS, choices=choices)
+    if not isinstance(given, Duet):
+        raise InputError(f"{path.name} holds one person: a scene goes on from a motion of two.")
+    return given
+
+
 @dataclass(frozen=True, kw_only=True)
 class SceneRequest(SamplingRequest):
     """Two people through the beats of a story.
@@ -52,9 +62,8 @@ class SceneRequest(SamplingRequest):
         poses: likewise.
         strictness: as of :class:`GenerateRequest`.
         loop: the end meets the beginning; not with ``motion``.
-        planned: where the words of a beat send people becomes a path (:mod:`.floor`), bystanders are held in place,
-            and postures, jumps and hands become poses (:mod:`.postures`, :mod:`.gestures`), unless a path or pose says
-            it.
+        planned: where the words of a beat send people becomes a path, bystanders are held in place, and postures,
+            jumps and hands become poses (:mod:`acts.staging`), unless a path or pose says it.
         motion: a given motion of two people on SMPL22's joints, of up to three minutes.
         start: second of the given motion at which the beats begin; its end by default.
         end: second at which the given motion goes on.
