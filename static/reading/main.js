@@ -46,7 +46,7 @@ class View {
    * for meanwhile never begins, as none does while another goes on.
    */
   async readFirst(text) {
-    if (this.waiting) await new Promise(() => {});
+    if (this.waiting) await new Promise(() => {}); // for ever
     this.waiting = true;
     this.typed(text);
     await this.asking.answered(() => this.shown);
@@ -76,7 +76,7 @@ class View {
 
   /** The props of the component as they are now. */
   sync(props) {
-    this.answer(props.shown);
+    this.answer(props.shown); // to the text as it was, or, where a run is opened, to the one that comes with it
     this.typed(props.text ?? "");
     this.answer(props.shown);
     this.judge(props.checked?.text ? props.checked : null);

@@ -22,9 +22,8 @@ function follow(target, drag, end) {
 /** The editor of a story: it shows one and tells of each change. */
 class Editor {
   /** `kept` takes the story as the component's value; `changed` tells the server that the user changed it. */
-  constructor(root, props, kept, changed) {
+  constructor(root, kept, changed) {
     this.root = root;
-    this.props = props;
     this.kept = kept;
     this.changed = changed;
     this.story = edits.empty();
@@ -268,7 +267,7 @@ class Editor {
     const box = ruler.getBoundingClientRect();
     const at = (x) => Math.round(10 * Math.min(Math.max((x - box.left) / box.width, 0), 1) * this.total) / 10;
     const first = at(event.clientX);
-    this.player?.seek(Math.round(30 * first));
+    this.player?.seek(edits.frameOf(first));
     ruler.setPointerCapture(event.pointerId);
     let span = null;
     const drag = (moved) => {
@@ -370,7 +369,7 @@ class Editor {
 /** `element` holds story.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
 export function mount(element, props, watch, trigger) {
   const root = element.querySelector(".pds");
-  root.editor = new Editor(root, props, (story) => (props.value = story), () => trigger("input"));
+  root.editor = new Editor(root, (story) => (props.value = story), () => trigger("input"));
   const sync = () => {
     root.editor.load(props.value);
     root.editor.lay(props.laid);

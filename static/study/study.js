@@ -33,13 +33,15 @@ async function go(what) {
   enable(false);
   const said = find(".pst-said");
   try {
-    const answer = await fetch(`${here}/${what}`, { method: "POST" });
+    const answer = await fetch(`${here}/${what}`, { method: "POST" }).catch(() => {
+      throw new Error(say("vote.unreachable"));
+    });
     const reply = await answer.json().catch(() => ({}));
     if (!answer.ok) throw new Error(reply.detail || say("vote.silent"));
     said.hidden = true;
     next(reply);
   } catch (error) {
-    said.textContent = error.message === "Failed to fetch" ? say("vote.unreachable") : error.message;
+    said.textContent = error.message;
     said.hidden = false;
     show({ busy: "" });
     enable(number !== null);

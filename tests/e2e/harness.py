@@ -40,8 +40,7 @@ def walking_duet(seconds: float = 5.0, *, roles: tuple[str, str] = ("actor", "re
     for me in range(2):
         swing = np.sin(2 * np.pi * 0.95 * t + phase + 0.7 * me) * stride
         body = np.zeros((frames, 22, 3))
-        rest = SMPL22.rest_positions()
-        rest[:, 1] -= rest[:, 1].min()
+        rest = SMPL22.standing()
         body[:] = rest
         body[:, :, 1] += 0.025 * np.abs(swing)[:, None] - 0.02
         for side, sign in (("left", 1.0), ("right", -1.0)):

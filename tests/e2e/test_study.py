@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
+from webdemo.ui.text.texts import say
+
 from .playing import set_number, unfold
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
@@ -71,6 +73,10 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     assert "damping" not in voter.content() and "They bow" not in voter.content()
     expect(voter.locator(".pst-progress")).to_have_text("Pair 1 of 1")
     expect(voter.locator("[data-answer='1']")).to_be_enabled(timeout=SLOW)
+    voter.evaluate("window.online = fetch; window.fetch = async () => { throw TypeError('Load failed'); }")
+    voter.keyboard.press("=")
+    expect(voter.locator(".pst-said")).to_have_text(say("vote.unreachable"))
+    voter.evaluate("window.fetch = window.online")
     voter.keyboard.press("=")
     expect(voter.locator(".pst-thanks")).to_contain_text("your votes are counted", timeout=SLOW)
     voter.reload()

@@ -18,6 +18,7 @@ import pytest
 from motion import InputError
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.storage import Storage
 from webdemo.ui.history import Search
 
 from .attacks.target import Target
@@ -84,7 +85,7 @@ class Process:
 
 
 def history(data: Path) -> Notebook:
-    return Notebook(Database(data / "history.db"), data / "motions")
+    return Notebook(Storage(Database(data / "history.db"), data / "motions"))
 
 
 def states(data: Path) -> list[str]:

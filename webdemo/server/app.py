@@ -34,7 +34,7 @@ from webdemo.server.http.payloads import Payloads
 from webdemo.server.http.public_pages import public_routes, study_routes
 from webdemo.server.lab import Lab, engine_of
 from webdemo.server.live.streams import live_routes
-from webdemo.server.queue.events import FairEvents
+from webdemo.server.queue.events import FairEvents, close_in_a_thread
 from webdemo.server.queue.recorder import Recorder
 from webdemo.server.store.scratch import Scratch, keep_files_apart, mend_uploads, visitors_folder
 from webdemo.ui.components.exports import Shelf
@@ -117,18 +117,14 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     page.max_threads = int(lab.quotas.events.everybody)  # each that waits for a run or a file holds a thread
     start_queue(page, partial(FairEvents, quota=lab.quotas.events, figures=lab.figures, bindings=lab.bindings))
     lab.health.works["queue of events"] = lambda: math.inf if page._queue.stopped and not lab.health.stopping else 0.0
-    options = launch_options() | {
-        "allowed_paths": [],
-        "server_name": settings.host,
-        "server_port": settings.port,
-        "show_error": False,  # an error's own text may hold paths; sentences are shown all the same
-    }
+    options = launch_options() | {"allowed_paths": [], "server_name": settings.host, "server_port": settings.port}
     gr.mount_gradio_app(app, page, path="/", root_path=settings.root_path or None, **options)
     page.has_launched = True  # a mounted page's is never set, and without it Gradio hands any file out
     (mounted,) = [r.app for r in app.routes if isinstance(r, Mount) and isinstance(r.app, App)]
     keep_states_lean(mounted, page)
     keep_files_apart(mounted)
     mend_uploads()
+    gradio.utils.SyncToAsyncIterator.aclose = close_in_a_thread  # type: ignore[method-assign]
     parser: Any = gradio.route_utils.GradioMultiPartParser
     gradio.route_utils.GradioMultiPartParser = lambda *given, **options: parser(  # type: ignore[misc,assignment]
         *given, **options | {"max_files": MOST_FILES}

@@ -54,14 +54,8 @@ class Lab:
         self.storage = Storage(
             database, settings.motions, quotas.room, scratch=scratch, free_bytes=settings.free_megabytes * 2**20
         )
-        self.history = Notebook(
-            database,
-            settings.motions,
-            storage=self.storage,
-            keep_days=settings.keep_days,
-            publish_days=settings.publish_days,
-        )
-        self.studies = Studies(database, settings.data / "studies", storage=self.storage)
+        self.history = Notebook(self.storage, keep_days=settings.keep_days, publish_days=settings.publish_days)
+        self.studies = Studies(self.storage, settings.data / "studies")
         partners: Any = engine if hasattr(engine, "partner") else Engine()  # beside Ray, they run here
         self.streams = Streams(partners, quotas.live)
         self.health = Health(

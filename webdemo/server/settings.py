@@ -23,11 +23,11 @@ from pydantic_settings import (
 
 from motion import InputError
 from motion.cores import usable_cores
+from webdemo.inference.own.entries import SETTINGS_FILE, SETTINGS_VARIABLE
 
 PREFIX = "PASDEDEUX_"
 PEOPLE = 8
 """People of a small lab, whose room together is all there is; a larger one seldom uses all of everyone's."""
-FILE = "pasdedeux.toml"
 PRIVATE = ("127.0.0.0/8", "10.0.0.0/8", "172.16.0.0/12", "192.168.0.0/16")
 """Private networks: a Space's proxy is in one of them, and nobody else reaches the Space directly. With "*", a visitor
 could claim any address, since the first one that is forwarded would count."""
@@ -175,7 +175,7 @@ class Settings(BaseSettings):
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
         """The environment first, then the settings file, then the defaults."""
-        file = Path(os.environ.get(f"{PREFIX}SETTINGS") or FILE)
+        file = Path(os.environ.get(SETTINGS_VARIABLE) or SETTINGS_FILE)
         return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, file)
 
     @property
@@ -239,9 +239,9 @@ def read_settings(**given: Any) -> Settings:
     Raises:
         InputError: one sentence naming the setting that does not fit, and the reason.
     """
-    named = os.environ.get(f"{PREFIX}SETTINGS")
+    named = os.environ.get(SETTINGS_VARIABLE)
     if named and not Path(named).is_file():
-        raise InputError(f"There is no settings file {named}: correct {PREFIX}SETTINGS or make the file.")
+        raise InputError(f"There is no settings file {named}: correct {SETTINGS_VARIABLE} or make the file.")
     try:
         return Settings(**{name: value for name, value in given.items() if value is not None})
     except ValidationError as error:
@@ -256,7 +256,7 @@ def read_settings(**given: Any) -> Settings:
     except SettingsError as error:
         raise InputError(f"The settings cannot be read ({error}): lists are written as JSON.") from None
     except ValueError as error:  # the file is not TOML
-        raise InputError(f"The settings file {named or FILE} cannot be read: {error}.") from None
+        raise InputError(f"The settings file {named or SETTINGS_FILE} cannot be read: {error}.") from None
 
 
 def settings_of_history() -> Settings:

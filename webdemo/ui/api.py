@@ -13,9 +13,8 @@ from typing import Any, ClassVar
 import gradio as gr
 
 import acts
-from motion import Clip, InputError
+from motion import InputError
 from motion.formats import ImportChoices, read
-from motion.retarget import to_smpl
 from webdemo.inference.methods import AUTOMATIC, by_class, methods
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.actor import read_actor
@@ -23,7 +22,7 @@ from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictR
 from webdemo.inference.requests.sampling import OWN_STEPS
 from webdemo.inference.run import Cancelled, Result
 from webdemo.inference.story import SceneRequest, in_time, read_words
-from webdemo.inference.story.request import MOST_SECONDS
+from webdemo.inference.story.request import read_motion
 from webdemo.ui.components import film as films
 from webdemo.ui.components.exports import file_name, without_place, write_files
 from webdemo.ui.components.reading import READERS, READING_EVENTS
@@ -35,7 +34,7 @@ from webdemo.view.sheet import write_sheet
 from webdemo.view.stage import LOOKS, Pane, Style
 
 from .context import PageContext
-from .places import READING
+from .places import FILMS, READING
 
 Answer = tuple[dict[str, Any], list[str]]
 Inputs = dict[str, Any]
@@ -193,7 +192,7 @@ class ClassEndpoint(GenerateEndpoint):
         return {
             "name": gr.Textbox(label="name of a class, such as: shake hands"),
             "seconds": gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
-            **self._sampling(by_class().default("guidance", GenerateRequest.guidance)),
+            **self._sampling(by_class().defaults.get("guidance", GenerateRequest.guidance)),
         }
 
     def generate_class(
@@ -310,12 +309,10 @@ class SceneEndpoint(Endpoint):
 
         def request() -> SceneRequest:
             fields = read_words(story, in_time())
-            given = read(Path(motion), longest=MOST_SECONDS, choices=reading_choices(asked)) if motion else None
-            if isinstance(given, Clip):
-                raise InputError(f"{Path(motion or '').name} holds one person: a scene goes on from a motion of two.")
+            given = read_motion(Path(motion), reading_choices(asked)) if motion else None
             fields |= {key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None}
             fields |= {key: asked.get(key) or None for key in ("start", "end")}
-            return SceneRequest(**fields, motion=given and to_smpl(given))
+            return SceneRequest(**fields, motion=given)
 
         return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress, reads=bool(motion))
 
@@ -348,7 +345,7 @@ class RenderEndpoint(Endpoint):
 
     name = "render"
     returns = ""
-    options: ClassVar = {"concurrency_limit": 1, "concurrency_id": "film"}
+    options: ClassVar = {"concurrency_limit": FILMS, "concurrency_id": "film"}
 
     def inputs(self) -> Inputs:
         """See :meth:`Endpoint.inputs`."""

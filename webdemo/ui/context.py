@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from webdemo.study import StudiesLike
 from webdemo.ui.components.exports import Shelf
 
-from .history import HistoryLike
-from .runs import EngineLike, HealthLike, RunsLike
+from .runs import EngineLike
+
+if TYPE_CHECKING:  # the server stands on the page, which knows its objects by their types alone
+    from webdemo.server.http.health import Health
+    from webdemo.server.queue.recorder import Recorder
+    from webdemo.server.store.notebook import Notebook
+    from webdemo.server.store.studies import Studies
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,8 +30,8 @@ class PageContext:
     """
 
     engine: EngineLike
-    runs: RunsLike
-    health: HealthLike
+    runs: Recorder
+    health: Health
     shelf: Shelf
-    history: HistoryLike
-    studies: StudiesLike
+    history: Notebook
+    studies: Studies

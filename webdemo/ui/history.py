@@ -1,16 +1,13 @@
-"""The interface of a history as the page uses it; the server keeps it."""
+"""What the page shows of a history; :mod:`webdemo.server.store.notebook` keeps it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from motion import Clip
 from webdemo.inference.run import Result
-
-from .visitor import Visitor
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,60 +154,3 @@ class PublicPage:
     title: str
     created: float
     until: float
-
-
-class HistoryLike(Protocol):
-    """Runs that can be found again. Every method raises InputError with a sentence where it cannot."""
-
-    def search(self, owner: str, wanted: Search) -> Found:
-        """The owner's runs that fit."""
-
-    def entry(self, run: str, owner: str) -> Entry:
-        """One of the owner's runs."""
-
-    def open(self, key: str, owner: str) -> Opened:
-        """A run by its id, for its owner, or by a link, for anybody."""
-
-    def keep(self, run: str, owner: str, kept: Kept) -> None:
-        """Writes down how its tab was set."""
-
-    def favour(self, run: str, owner: str, *, favourite: bool) -> None:
-        """Marks a run as one to keep, or no longer."""
-
-    def describe(
-        self, run: str, owner: str, *, title: str | None = None, tags: str | None = None, note: str | None = None
-    ) -> None:
-        """Names a run, tags it, or writes a note; what is None stays."""
-
-    def remove(self, runs: Sequence[str], owner: str) -> int:
-        """Takes runs out of the history; they can be restored for a while. Returns how many."""
-
-    def restore(self, runs: Sequence[str], owner: str) -> int:
-        """Brings removed runs back; returns how many."""
-
-    def link(self, run: str, owner: str) -> tuple[str, float]:
-        """The link to a run: its key, and when it ends (seconds since 1970)."""
-
-    def revoke(self, run: str, owner: str) -> int:
-        """Ends the link to a run; returns how many there were."""
-
-    def publish(self, run: str, owner: str) -> PublicPage:
-        """The public page of a run."""
-
-    def pages(self, owner: str) -> Sequence[PublicPage]:
-        """The owner's public pages that have not ended, newest first."""
-
-    def end_page(self, key: str, owner: str) -> None:
-        """Ends a public page of the owner's."""
-
-    def usage(self, who: Visitor) -> Usage:
-        """The room that a person uses, and how much they may."""
-
-    def weight(self, owner: str, runs: Sequence[str]) -> float:
-        """Bytes of runs, or of all of them for none given: about those that :meth:`export` writes."""
-
-    def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
-        """Writes the motions of runs, or of all for none given, into one .zip; returns how many runs."""
-
-    def take_in(self, owner: str, files: Sequence[Path], *, address: str = "") -> int:
-        """Adds results to the owner's runs, each from its .npz; returns how many."""

@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gradio as gr
 from gradio.queueing import Queue
@@ -28,9 +28,11 @@ from webdemo.ui.text.texts import say
 from .api import ENDPOINTS
 from .context import PageContext
 from .frames import begin_early
-from .history import HistoryLike
-from .runs import EngineLike, HealthLike
+from .runs import EngineLike
 from .theme import HEAD, style_sheet, theme
+
+if TYPE_CHECKING:
+    from .context import Health, Notebook
 
 TITLE = "Pas de Deux"
 
@@ -93,7 +95,7 @@ def build_page(page: PageContext) -> gr.Blocks:
     return demo
 
 
-def _build_header(history: HistoryLike) -> gr.HTML:
+def _build_header(history: Notebook) -> gr.HTML:
     """The title, the search and the mark that says whether the model is ready, which is returned."""
     with gr.Row(elem_classes="pd-header", equal_height=True):
         gr.HTML('<div class="pd-brand"><h1>Pas de Deux</h1></div>')
@@ -146,7 +148,7 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
             HistoryTab(page, jobs, tabs).build(demo, past, record)
 
 
-def watch_loading(engine: EngineLike, health: HealthLike, *, interval: float = 0.3) -> Iterator[str]:
+def watch_loading(engine: EngineLike, health: Health, *, interval: float = 0.3) -> Iterator[str]:
     """Has the networks loaded and yields the header's mark until they are there, or failed."""
     health.probe()
     shown = None
@@ -169,6 +171,6 @@ def launch_options() -> dict[str, Any]:
         "run_history": False,
         "i18n": gr.I18n(en={key: say(key) for key in _OF_GRADIO}),
         "ssr_mode": False,
-        "show_error": True,
+        "show_error": False,  # an error's own text may hold paths; sentences are shown all the same
         "max_file_size": MAX_BYTES,
     }

@@ -11,6 +11,9 @@ from .visitor import visitor
 
 AT_ONCE = 2
 """Files that are read at a time, of all people together; so many times the memory of one is what they take."""
+FILMS = 2
+"""Films and figures that are drawn at a time; nobody has more than half of these places, as
+:mod:`webdemo.server.queue.events` gives them out."""
 _REMEMBERED = 60.0
 """Seconds after which it is forgotten that somebody had a place."""
 

@@ -8,7 +8,6 @@ is text in them, and the motion is data that no browser runs.
 from __future__ import annotations
 
 import html
-import time
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -21,6 +20,7 @@ from webdemo.ui.components.part import STATIC
 from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.history import Entry
 from webdemo.ui.text.texts import TEXTS, TEXTS_JS, say
+from webdemo.ui.text.words import day
 from webdemo.ui.theme import COLOURS
 from webdemo.view.payload import Payload
 
@@ -52,9 +52,8 @@ def caption(entry: Entry) -> str:
 
 def player_html(entry: Entry, payload: Payload, place: Place, *, until: float) -> str:
     """A page with one result; ``until`` is when it ends, in seconds since 1970."""
-    day = time.strftime("%d %B %Y", time.gmtime(until)).lstrip("0")
     code = frame_code(place.embed, entry.title) if place.embed else ""
-    return _page("page.html", place, title=entry.title, motion=payload, facts=caption(entry), code=code, day=day)
+    return _page("page.html", place, title=entry.title, motion=payload, facts=caption(entry), code=code, day=day(until))
 
 
 def embed_html(entry: Entry, payload: Payload, place: Place) -> str:

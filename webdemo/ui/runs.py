@@ -1,4 +1,4 @@
-"""The runs that are going on: one a session, its place in the line, and a way to stop it."""
+"""An engine as the page and the server use it, and the progress of a run that waits."""
 
 from __future__ import annotations
 
@@ -32,31 +32,3 @@ class Waiting(Progress):
     """
 
     seconds_left: float | None = None
-
-
-class RunsLike(Protocol):
-    """The interface with which tabs and endpoints run a request; an earlier run of the session is cancelled.
-
-    Closing the iterator cancels the run.
-    """
-
-    def cancel(self, session: str) -> bool:
-        """Stops the session's run within one step; False where it has none."""
-
-    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
-        """Runs a request: its progress, with the stage "queue" while it waits, then its result.
-
-        Raises:
-            InputError: for what the engine cannot do.
-            Cancelled: where the run was cancelled.
-        """
-
-
-class HealthLike(Protocol):
-    """Tries whether an engine works, for which its networks are loaded."""
-
-    error: str
-    """What went wrong last, in a few words; "" for nothing."""
-
-    def probe(self) -> None:
-        """Begins to try in a thread of its own, unless that goes on, has worked or has just failed."""

@@ -15,6 +15,7 @@ from starlette.responses import Response
 
 from motion import InputError
 from tests.server.lab import stub_module
+from tests.server.live.test_streams import Clock
 from webdemo.cli import main
 from webdemo.inference.requests import GenerateRequest
 from webdemo.server.accounts import accounts
@@ -26,16 +27,8 @@ from webdemo.server.lab import Lab
 from webdemo.server.settings import Settings, read_settings
 from webdemo.server.store.database import Database, SignIn
 from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.storage import Storage
 from webdemo.ui.history import Search
-
-
-class Clock:
-    """A time that a test sets."""
-
-    now = 1000.0
-
-    def __call__(self) -> float:
-        return self.now
 
 
 @pytest.fixture
@@ -252,7 +245,7 @@ def test_nobody_inherits_from_an_earlier_account_of_the_same_name(
     """Also where something of theirs is written down after they were deleted."""
     first = people.arrive("ada")
     Administration(database, tmp_path).set_role("ada", admin=True)
-    history = Notebook(database, tmp_path / "motions")
+    history = Notebook(Storage(database, tmp_path / "motions"))
     history.begin(first.owner, GenerateRequest(prompt="They bow.").to_dict(), "They bow.")
     assert not people.add("ada", "another password") and people.arrive("ada").key == first.key, "the same person"
     monkeypatch.setenv("PASDEDEUX_DATA", str(tmp_path))

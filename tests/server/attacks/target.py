@@ -20,6 +20,7 @@ import httpx
 
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.storage import Storage
 
 from ..lab import add_accounts, serve_apart
 
@@ -152,7 +153,7 @@ class Target:
         """Makes a public page of somebody's run; returns its key."""
         database = Database(self.data / "history.db")
         try:
-            return Notebook(database, self.data / "motions").publish(run, owner).key
+            return Notebook(Storage(database, self.data / "motions")).publish(run, owner).key
         finally:
             database.close()
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import socket
 import sqlite3
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from webdemo.server.accounts.accounts import Accounts
 from webdemo.server.store.database import Database
 
 from ..clients import FIELDS, read_all
+from ..queue.test_queue import wait_for
 from .target import Target
 
 
@@ -23,13 +23,6 @@ def own(tmp_path: Path) -> Iterator[Target]:
     """A server with accounts of its own, which a test may ruin."""
     with Target(tmp_path, accounts=True) as target:
         yield target
-
-
-def wait_for(condition: Callable[[], bool]) -> None:
-    until = time.monotonic() + 60
-    while not condition():
-        assert time.monotonic() < until
-        time.sleep(0.5)
 
 
 def health(target: Target) -> tuple[int, dict[str, str]]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from webdemo.server.store.database import Database
+from webdemo.server.store.storage import Storage
 from webdemo.server.store.studies import Studies
 from webdemo.study import Pair
 
@@ -40,7 +41,7 @@ class Victim:
         target.ask("ada", "POST", f"{API}/queue/join", json=join).raise_for_status()
         walking = stub_module().walking
         database = Database(target.data / "history.db")
-        study = Studies(database, target.data / "studies").create(
+        study = Studies(Storage(database, target.data / "motions"), target.data / "studies").create(
             self.owner, "Which is longer?", (SECRET, f"{SECRET} damped"), [Pair(walking(0.5), walking(0.5))]
         )
         database.close()

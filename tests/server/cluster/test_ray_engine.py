@@ -6,7 +6,6 @@ import contextlib
 import os
 import signal
 import threading
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from importlib.util import find_spec
@@ -19,6 +18,7 @@ import pytest
 if find_spec("ray") is None:
     pytest.skip("Ray is not installed: pip install -r requirements-ray.txt", allow_module_level=True)
 
+from tests.server.queue.test_queue import wait_for
 from webdemo.inference import Engine
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Progress, Result
@@ -56,13 +56,6 @@ def assert_same(one: Result, other: Result) -> None:
     assert one.manifest == other.manifest
     for duet, wanted in zip(one.duets, other.duets, strict=True):
         np.testing.assert_allclose(duet.positions, wanted.positions, atol=2e-4)
-
-
-def wait_for(condition: Any) -> None:
-    until = time.monotonic() + 60
-    while not condition():
-        assert time.monotonic() < until
-        time.sleep(0.02)
 
 
 def own_replicas() -> list[int]:

@@ -25,7 +25,6 @@ from webdemo.ui.components.reading import Reading
 from webdemo.ui.components.story import StoryLine, story_fields, story_value
 
 FILE = {"path": "/uploads/ada/x.glb", "meta": {"_type": "gradio.FileData"}}
-HUG = Act(id="1", act="hug", agents=("a", "b"))
 STORY: dict[str, Any] = json.loads(
     json.dumps(
         story_value(

@@ -7,6 +7,7 @@ import base64
 import json
 import threading
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -40,7 +41,9 @@ class Clock:
 
 def streams(most: int = 3, address: int = 2) -> Streams:
     quota = Quota("live streams", 1, address, most)
-    return Streams(STUB.StubEngine(), quota, clock=Clock())
+    some: Any = Streams(STUB.StubEngine(), quota)
+    some.clock = Clock()
+    return some
 
 
 def poses(times: list[float], metres: float = 0.0) -> bytes:
@@ -124,6 +127,11 @@ def test_a_server_that_stops_ends_its_streams() -> None:
         some.find(key, ADA)
     with pytest.raises(Refused, match="stopping"):
         some.open(ADA, "agent")
+    late = streams()
+    late.engine = SimpleNamespace(partner=lambda *_, **__: late.stop())
+    with pytest.raises(Refused, match="stopping"):
+        late.open(ADA, "agent")
+    assert late.count == 0
     with pytest.raises(Refused, match="switched off"):
         streams(most=0).open(ADA, "agent")
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 import time
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from functools import partial
@@ -15,6 +17,7 @@ import gradio as gr
 import pytest
 from fastapi import HTTPException
 from gradio.routes import App
+from gradio.utils import SyncToAsyncIterator
 from starlette.routing import Mount
 
 from tests.server.attacks.target import Target
@@ -168,6 +171,28 @@ def test_whoever_waits_takes_no_thread_from_others(tmp_path: Path) -> None:
     app = create_app(settings_for(tmp_path, open=True), engine=stub_module().StubEngine())
     (page,) = [r.app.get_blocks() for r in app.routes if isinstance(r, Mount) and isinstance(r.app, App)]
     assert page.max_threads >= page._queue.quota.everybody > page._queue.quota.address
+    films = [fn.concurrency_limit for fn in page.fns.values() if fn.concurrency_id == "film"]
+    assert films and min(films) > 1, "one person's film of ten minutes leaves a place to others"
+
+
+def test_a_run_whose_page_is_gone_ends_beside_the_event_loop(tmp_path: Path) -> None:
+    """What it wrote down at its end kept every other request waiting, for 15 seconds where the database was busy."""
+    ends = []
+
+    def run() -> Iterator[int]:
+        try:
+            yield 1
+        finally:
+            ends.append(threading.get_ident())
+
+    async def leave() -> None:
+        create_app(settings_for(tmp_path, open=True), engine=stub_module().StubEngine())
+        running = SyncToAsyncIterator(run(), None)
+        await anext(running)
+        await running.aclose()
+
+    asyncio.run(leave())
+    assert ends and ends[0] != threading.get_ident()
 
 
 def test_answers_that_nobody_fetches_are_few(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Iterator
@@ -17,6 +18,7 @@ from webdemo.inference.run import Cancelled, Progress, Result
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.app import engine_of
 from webdemo.server.cluster import ray_engine
+from webdemo.server.http.health import Figures
 from webdemo.server.queue import queue as line
 from webdemo.server.queue.queue import FairQueue
 from webdemo.server.settings import Settings
@@ -90,17 +92,18 @@ class People:
             assert not thread.is_alive()
 
 
-def make(
-    monkeypatch: pytest.MonkeyPatch, *, waiting: int = 4, everybody: int = 64, **limits: int
-) -> tuple[Gate, People]:
-    gate: Any = Gate()
-    quota = Quota("runs waiting", person=waiting, everybody=everybody)
-    queue = FairQueue(gate, quota, **limits)
-    return gate, People(queue, monkeypatch)
+def queue_of(gate: Any, person: int = 4, address: float = math.inf, everybody: float = 64, **limits: Any) -> FairQueue:
+    usual = {"running": 2, "workers": 1, "seconds": 0.0, "figures": Figures(), "broken": lambda error: None}
+    return FairQueue(gate, Quota("runs waiting", person, address, everybody), **(usual | limits))
+
+
+def make(monkeypatch: pytest.MonkeyPatch, **limits: Any) -> tuple[Gate, People]:
+    gate = Gate()
+    return gate, People(queue_of(gate, **limits), monkeypatch)
 
 
 def wait_for(condition: Any) -> None:
-    until = time.monotonic() + 20
+    until = time.monotonic() + 60
     while not condition():
         assert time.monotonic() < until
         time.sleep(0.005)
@@ -130,7 +133,7 @@ def test_a_long_run_costs_later_turns(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_person_has_so_many_at_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    gate, people = make(monkeypatch, running=2, waiting=8, workers=4)
+    gate, people = make(monkeypatch, running=2, person=8, workers=4)
     for i in range(5):
         people.ask("busy", request(f"{i}"))
     people.ask("other", request("other"))
@@ -142,7 +145,7 @@ def test_a_person_has_so_many_at_work(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_person_may_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    gate, people = make(monkeypatch, waiting=2)
+    gate, people = make(monkeypatch, person=2)
     for i in range(4):
         people.ask("one", request(f"r{i}"))
     people.ask("other", request("other"))
@@ -153,7 +156,7 @@ def test_a_person_may_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_one_address_does_not_fill_the_line() -> None:
-    queue = FairQueue(Gate(), Quota("runs waiting", 4, 3))  # type: ignore[arg-type]
+    queue = queue_of(Gate(), address=3)
 
     def enter(name: str, address: str) -> Any:
         return queue._enter(name, request(name), Visitor(person=name, address=address))
@@ -202,6 +205,7 @@ def test_cancel_while_waiting_and_while_running(monkeypatch: pytest.MonkeyPatch)
     assert gate.order == ["a"]
     wait_for(lambda: people.queue.running == 0)
     assert not people.queue.cancel("session of a")
+    assert b'pasdedeux_runs_total{model="m",outcome="cancelled"} 2.0' in people.queue.figures.text()
 
 
 def test_an_error_is_its_own_alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -312,7 +316,7 @@ def test_a_result_that_is_there_is_not_too_late(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(run, "monotonic", lambda: now)
     gate = Gate()
     gate.open.release()
-    queue = FairQueue(gate, seconds=600)  # type: ignore[arg-type]
+    queue = queue_of(gate, seconds=600)
     events = queue.run("a session", request("x"))
     assert isinstance(next(events), Progress)
     wait_for(lambda: queue.running == 0)

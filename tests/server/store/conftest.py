@@ -9,10 +9,11 @@ import pytest
 
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.storage import Storage
 
 
 @pytest.fixture
 def notebook(tmp_path: Path) -> Iterator[Notebook]:
     database = Database(tmp_path / "h.db")
-    yield Notebook(database, tmp_path / "motions")
+    yield Notebook(Storage(database, tmp_path / "motions"))
     database.close()

@@ -20,6 +20,7 @@ from webdemo.server.settings import Settings
 from webdemo.server.store.backup import back_up, backups
 from webdemo.server.store.database import Database, Study
 from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.storage import Storage
 from webdemo.ui.history import Search
 
 
@@ -55,7 +56,7 @@ def test_a_restore_drill(tmp_path: Path) -> None:
         shutil.copytree(made, folder / "data")
         assert made.stat().st_mode & 0o077 == 0
         database = Database(lab_at(folder).database)
-        history = Notebook(database, folder / "data" / "motions")
+        history = Notebook(Storage(database, folder / "data" / "motions"))
         assert history.search("user ada", Search()).total == 3
         for owner in ("user ada", "user eve"):
             for entry in history.search(owner, Search(limit=500)).entries:

@@ -30,8 +30,8 @@ PEOPLE = ("user ada", "user eve", "user bob")
 def notebook(tmp_path: Path) -> Iterator[Notebook]:
     database = Database(tmp_path / "h.db")
     scratch = Scratch(tmp_path / "s", 3e6)
-    storage = Storage(database, tmp_path / "motions", Quota("bytes", person=8e5, everybody=1.6e6), scratch=scratch)
-    yield Notebook(database, tmp_path / "motions", storage=storage)
+    room = Quota("bytes", person=8e5, everybody=1.6e6)
+    yield Notebook(Storage(database, tmp_path / "motions", room, scratch=scratch))
     database.close()
 
 
@@ -49,7 +49,7 @@ def runs_of(notebook: Notebook, owner: str) -> set[str]:
 
 
 def test_nobody_s_deeds_remove_what_is_another_s(notebook: Notebook, tmp_path: Path) -> None:
-    studies = Studies(notebook.database, tmp_path / "studies", storage=notebook.storage)
+    studies = Studies(notebook.storage, tmp_path / "studies")
     file = notebook.folder / kept(notebook, "user z") / "1.npz"
     walk = stub_module().walking(1.0)
     draw, evicted, refused = random.Random(1), 0, 0

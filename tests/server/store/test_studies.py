@@ -14,6 +14,7 @@ from tests.server.clients import no_room
 from tests.server.lab import stub_module
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.store.database import Database
+from webdemo.server.store.storage import Storage
 from webdemo.server.store.studies import Studies
 from webdemo.study import Pair, StudyEntry
 
@@ -25,7 +26,7 @@ walking = stub_module().walking
 @pytest.fixture
 def studies(tmp_path: Path) -> Iterator[Studies]:
     database = Database(tmp_path / "h.db")
-    yield Studies(database, tmp_path / "studies", clock=lambda: 1000.0)
+    yield Studies(Storage(database, tmp_path / "motions"), tmp_path / "studies")
     database.close()
 
 
@@ -153,11 +154,11 @@ def test_what_makes_no_study_is_a_sentence_and_leaves_nothing(studies: Studies) 
     studies.storage.room = Quota("bytes", everybody=1)
     with pytest.raises(InputError, match="others' runs are not removed for yours"):
         new(studies)
-    assert studies.mine(ME) == [] and not any(studies.folder.iterdir())
+    assert studies.mine(ME) == [] and not any(studies.folder.glob("*"))
 
 
 def test_a_full_disk_leaves_no_half_study(tmp_path: Path) -> None:
-    studies = Studies(Database(tmp_path / "h.db"), tmp_path / "studies")
+    studies = Studies(Storage(Database(tmp_path / "h.db"), tmp_path / "motions"), tmp_path / "studies")
     many = [Pair(walking(0.2), walking(0.2), "They walk. " * 9)] * 80
     with no_room(studies.database), pytest.raises(InputError, match="disk is full"):
         studies.create(ME, "Which?", RUNS, many)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,9 +20,9 @@ from webdemo.ui.history import Entry, Found, Opened, Search, Usage
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, compared
 from webdemo.ui.tabs.history_files import room_html
-from webdemo.ui.text.words import settings
+from webdemo.ui.text.words import day, settings
 
-WHEN = time.strftime("%d %b %Y %H:%M", time.localtime(0))
+WHEN = day(0, " %H:%M")
 
 
 def entry(name: str) -> Entry:

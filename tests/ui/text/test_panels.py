@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+import time
 from dataclasses import replace
 
 import pytest
@@ -13,8 +14,10 @@ from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Progress, Result
 from webdemo.ui.components.player import result_payload
+from webdemo.ui.history import Entry
+from webdemo.ui.public_html import Place, player_html
 from webdemo.ui.text.panels import effect_line, model_state, notes_lines, readout_panel, status
-from webdemo.ui.text.words import cancelled_line, progress_line, text
+from webdemo.ui.text.words import cancelled_line, link_line, progress_line, text
 
 HOSTILE = "<img src=x onerror=alert(1)> ${alert(2)} {{value}} `x` \"quoted\" 'single'"
 
@@ -22,6 +25,16 @@ HOSTILE = "<img src=x onerror=alert(1)> ${alert(2)} {{value}} `x` \"quoted\" 'si
 def result(**changed: object) -> Result:
     request = GenerateRequest(prompt="unknown " + HOSTILE, seconds=1, steps=2, **changed)
     return list(StubEngine().run(request))[-1]
+
+
+def test_a_moment_is_one_day_wherever_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TZ", "UTC-14")
+    time.tzset()
+    entry = Entry(id="a", kind="generate", title="They bow.", state="done")
+    told = link_line(86_000.0), player_html(entry, {}, Place(files=""), until=86_000.0)
+    monkeypatch.undo()
+    time.tzset()
+    assert all("2 Jan 1970" in each for each in told)
 
 
 def test_text_is_escaped_and_comes_back_the_same() -> None:

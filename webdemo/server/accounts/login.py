@@ -53,6 +53,7 @@ def login_routes(settings: Settings, accounts: Accounts) -> APIRouter:
         async with places:
             known = request.cookies.get(KNOWN_COOKIE, "")
             token = await run_in_threadpool(accounts.begin, name, password, address, known)
+            browser = await run_in_threadpool(accounts.known_browser, name) if token else ""
         if token is None:
             if in_browser:
                 return page(_own_path(next), name=username, error=WRONG, status=401)
@@ -60,7 +61,7 @@ def login_routes(settings: Settings, accounts: Accounts) -> APIRouter:
         opened = RedirectResponse(f"{root}{_own_path(next)}", status_code=303)
         response: Response = opened if in_browser else JSONResponse({"success": True})
         keep(response, request, SESSION_COOKIE, token, accounts.seconds)
-        keep(response, request, KNOWN_COOKIE, accounts.known_browser(name), YEAR)
+        keep(response, request, KNOWN_COOKIE, browser, YEAR)
         return response
 
     @router.get("/logout")

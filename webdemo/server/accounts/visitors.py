@@ -157,7 +157,7 @@ def set_cookie(response: Response, name: str, value: str, *, seconds: float, roo
 
 PEER = "peer"
 """Key of the state of a request's scope: the address that its connection came from."""
-NAME = re.compile(r"\A[a-z0-9][a-z0-9._@+-]{0,79}\Z")
+_PROXY_NAME = re.compile(r"\A[a-z0-9][a-z0-9._@+-]{0,79}\Z")
 """Names of people who sign in elsewhere, in lower case: also addresses of mail."""
 _NOT_BY_PROXY = "This lab is reached through its proxy, where you sign in: open its usual address."
 _BAD_NAME = "The proxy's name for you cannot be used here: tell the person who runs this server."
@@ -184,6 +184,6 @@ def person_by_proxy(settings: Settings, scope: Scope) -> str:
     name = names[0].strip().lower()
     if not name:
         return ""
-    if len(names) > 1 or not NAME.match(name):
+    if len(names) > 1 or not _PROXY_NAME.match(name):
         raise Refused(403, _BAD_NAME, "proxy")
     return name

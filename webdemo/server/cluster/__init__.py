@@ -1,1 +1,1 @@
-"""Several processes or machines: names for each, and the engine on Ray Serve."""
+"""Several processes or machines: the engine on Ray Serve."""

@@ -14,14 +14,15 @@ import threading
 import time
 from collections.abc import Awaitable, Callable
 from functools import partial
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
 from motion import FPS, SMPL22, Clip, InputError
-from webdemo.inference.requests.live import PARTNERS, LivePartner
+from webdemo.inference.engine import Engine
+from webdemo.inference.requests.live import check_partner
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.http.routes import Refused
 from webdemo.ui.visitor import Visitor, visitor_of
@@ -47,13 +48,6 @@ STOPPING = "The server is stopping: press Start again in a minute."
 UNKNOWN = "The server does not know this live stream any more: press Start to go on."
 
 
-class Partners(Protocol):
-    """An engine that has live partners."""
-
-    def partner(self, name: str, *, seed: int = 0) -> LivePartner:
-        """A partner who answers a stream of poses."""
-
-
 class Streams:
     """Opens streams, finds them again and closes those that are idle.
 
@@ -64,17 +58,15 @@ class Streams:
     Args:
         engine: has the partners.
         quota: of streams.
-        clock: gives the time; seconds.
     """
 
-    def __init__(self, engine: Partners, quota: Quota, *, clock: Callable[[], float] = time.monotonic) -> None:
-        self.engine, self.quota, self.clock = engine, quota, clock
+    def __init__(self, engine: Engine, quota: Quota) -> None:
+        self.engine, self.quota, self.clock = engine, quota, time.monotonic
         self._computing, self._opening = asyncio.Lock(), asyncio.Lock()  # whoever waits longest goes first
         self._began: dict[asyncio.Lock, float] = {}
         self._lock = threading.Lock()
         self._open: dict[str, LiveStream] = {}
         self._ended: dict[str, str] = {}
-        self._coming = 0
         self._stopping = False
 
     @property
@@ -94,20 +86,16 @@ class Streams:
             Refused: if there are none here.
             InputError: if there are too many, or for a partner that is not known.
         """
-        if partner not in PARTNERS:
-            raise InputError(f"There is no live partner {partner!r:.40}: choose {' or '.join(PARTNERS)}.")
+        check_partner(partner)
         self.sweep()
         with self._lock:
             self._admit(visitor)
-            self._coming += 1
-        try:
-            made = self.engine.partner(partner, seed=seed)
-            stream = LiveStream(secrets.token_urlsafe(16), visitor.person, visitor.address, made, self.clock)
-            with self._lock:
-                self._open[stream.id] = stream
-        finally:
-            with self._lock:
-                self._coming -= 1
+        made = self.engine.partner(partner, seed=seed)
+        stream = LiveStream(secrets.token_urlsafe(16), visitor.person, visitor.address, made, self.clock)
+        with self._lock:
+            if self._stopping:
+                raise Refused(503, STOPPING, "live")
+            self._open[stream.id] = stream
         return stream
 
     def _admit(self, visitor: Visitor) -> None:
@@ -119,7 +107,6 @@ class Streams:
         for stream in [stream for stream in self._open.values() if stream.person == visitor.person]:
             self._end(stream, OTHER_TAB)
         held = [(stream.person, stream.address) for stream in self._open.values()]
-        held += [("", "")] * self._coming
         self.quota.check(visitor.person, visitor.address, held)
 
     def find(self, key: str, visitor: Visitor) -> LiveStream:
@@ -240,8 +227,7 @@ def _begin(streams: Streams, visitor: Visitor, body: bytes) -> dict[str, Any]:
     if type(seed) is not int or not 0 <= seed < 2**32:
         raise InputError("The seed of a live stream is a whole number from 0 to 4294967295.")
     stream = streams.open(visitor, str(fields.get("partner", "")), seed=seed)
-    rest = SMPL22.rest_positions()[None]
-    empty = player_payload(Clip(rest - [0, rest[..., 1].min(), 0], FPS, SMPL22, name="you"), title="Live")
+    empty = player_payload(Clip(SMPL22.standing()[None], FPS, SMPL22, name="you"), title="Live")
     return {"id": stream.id, "payload": {**empty, "id": f"stream-{stream.id}"}}
 
 

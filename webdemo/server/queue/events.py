@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from fastapi import HTTPException, Request
 from gradio.queueing import Event, EventQueue, Queue
 from gradio.utils import LRUCache
+from starlette.concurrency import run_in_threadpool
 
 from webdemo.server.accounts.quotas import OverQuota, Quota
 from webdemo.server.accounts.visitors import Bindings
@@ -194,6 +195,22 @@ class FairEvents(Queue):
                 messages = self.pending_messages_per_session.get(answer.session)
                 while messages and not messages.empty():  # a stream that has begun waits for what follows
                     messages.get_nowait()
+
+
+async def close_in_a_thread(closing: Any, timeout: float = 60.0, pause: float = 0.05) -> None:
+    """Ends the generator of an event whose page is gone, with the signature of ``SyncToAsyncIterator.aclose``.
+
+    Gradio (6.31) closes it on the event loop: what it does at its end, such as writing down a run, kept all others
+    waiting. One that is at a step is tried again.
+    """
+    until = time.monotonic() + timeout
+    while True:
+        try:
+            return await run_in_threadpool(closing.iterator.close)
+        except ValueError as error:
+            if "already executing" not in str(error) or time.monotonic() > until:
+                raise
+        await asyncio.sleep(pause)
 
 
 def _source(event: Event) -> str:

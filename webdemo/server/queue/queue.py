@@ -34,7 +34,7 @@ MAX_GROUPS = 8
 
 
 class FairQueue:
-    """Runs for all sessions; a :class:`webdemo.ui.runs.RunsLike`.
+    """Runs for all sessions.
 
     Args:
         engine: runs the requests.
@@ -49,19 +49,16 @@ class FairQueue:
     def __init__(
         self,
         engine: EngineLike,
-        quota: Quota | None = None,
+        quota: Quota,
         *,
-        running: int = 2,
-        workers: int = 1,
-        seconds: float = 0.0,
-        figures: Figures | None = None,
-        broken: Callable[[BaseException], None] = lambda error: None,
+        running: int,
+        workers: int,
+        seconds: float,
+        figures: Figures,
+        broken: Callable[[BaseException], None],
     ) -> None:
-        self.engine = engine
-        self.quota = quota or Quota("runs waiting", person=4)
+        self.engine, self.quota, self.figures, self.broken = engine, quota, figures, broken
         self.most_running, self.workers, self.seconds = running, workers, seconds
-        self.figures = figures or Figures()
-        self.broken = broken
         self.paces: defaultdict[str, Pace] = defaultdict(Pace)
         self._change = threading.Condition()
         self._waiting: list[Job] = []
@@ -118,10 +115,20 @@ class FairQueue:
                 long, or the engine cannot fulfil the request.
             Cancelled: if the run was cancelled.
         """
-        job = self._enter(session, request, visitor())
+        job, outcome = self._enter(session, request, visitor()), "cancelled"
         try:
-            yield from self._watch(job)
+            for event in self._watch(job):
+                if isinstance(event, Result):
+                    outcome = "done"
+                    for stage, seconds in event.timings.items():
+                        self.figures.stage_seconds.labels(job.model, stage).observe(seconds)
+                yield event
+        except Exception as error:
+            if not isinstance(error, Cancelled):
+                outcome = "refused" if isinstance(error, InputError) else "failed"
+            raise
         finally:
+            self.figures.runs.labels(job.model, outcome).inc()
             with self._change:
                 job.token.cancel()
                 if job in self._waiting:
@@ -167,7 +174,7 @@ class FairQueue:
             except OverQuota as over:
                 self.figures.refused.labels(f"queue of {over.whose}").inc()
                 raise
-            job.group = self._group(request)
+            job.group = self._group(job.model)
             running = [(job.person, job.cost) for job in self._running]
             self._accounts.meet(person, {job.person for job in (*self._waiting, *self._running)}, running)
             self._sessions[session] = job.token
@@ -175,9 +182,8 @@ class FairQueue:
             self._change.notify_all()
         return job
 
-    def _group(self, request: Any) -> str:
-        """The model group of a request; starts its workers if needed."""
-        name = str(getattr(request, "model", "default"))
+    def _group(self, name: str) -> str:
+        """The model group of a method; starts its workers if needed."""
         if name not in self._workers and len(self._workers) >= MAX_GROUPS:
             name = min(self._workers)
         if name not in self._workers:
@@ -241,7 +247,7 @@ class FairQueue:
                     self._change.notify_all()
             if whole:
                 self.paces[group].learn(job.cost, time.monotonic() - job.started)
-            self.figures.stage_seconds.labels(group, "queue").observe(job.started - job.came)
+            self.figures.stage_seconds.labels(job.model, "queue").observe(job.started - job.came)
 
     def _next(self, group: str) -> Job | None:
         self._waiting = [job for job in self._waiting if not job.token.cancelled]
@@ -262,16 +268,10 @@ class FairQueue:
                 if isinstance(event, Result):
                     return True
         except Exception as error:
-            self._note(job, error)
+            if not isinstance(error, (InputError, Cancelled)):
+                self.figures.errors.labels(type(error).__name__).inc()
+                self.broken(error)
             job.events.put(error)
         else:  # an engine stops without a result only when cancelled
             job.events.put(Cancelled("The run ended without a result."))
         return False
-
-    def _note(self, job: Job, error: Exception) -> None:
-        ours = not isinstance(error, (InputError, Cancelled))
-        outcome = "failed" if ours else "cancelled" if isinstance(error, Cancelled) else "refused"
-        self.figures.runs.labels(job.group, outcome).inc()
-        if ours:
-            self.figures.errors.labels(type(error).__name__).inc()
-            self.broken(error)

@@ -18,7 +18,7 @@ from .queue import FairQueue
 
 
 class Recorder:
-    """Runs requests in a queue and keeps every one of them; a :class:`webdemo.ui.runs.RunsLike`.
+    """Runs requests in a queue and keeps every one of them.
 
     Args:
         queue: runs them.
@@ -45,7 +45,6 @@ class Recorder:
             for event in self.queue.run(session, request):
                 if isinstance(event, Result):
                     state, event = "done", self._kept(run, event)
-                    self._count(event)
                 elif state == "refused":
                     state, message = "cancelled", "This run was cancelled."
                 yield event
@@ -78,12 +77,6 @@ class Recorder:
         except InputError as error:
             return replace(result, run="", notes=(*result.notes, str(error)))
         return result
-
-    def _count(self, result: Result) -> None:
-        model = str(result.manifest.get("model", "unknown"))
-        self.queue.figures.runs.labels(model, "done").inc()
-        for stage, seconds in result.timings.items():
-            self.queue.figures.stage_seconds.labels(model, stage).observe(seconds)
 
 
 def title_of(asked: Mapping[str, Any]) -> str:

@@ -43,6 +43,11 @@ class Job:
     started: float = 0.0
     moved: float = 0.0
 
+    @property
+    def model(self) -> str:
+        """The method that it is to be done by."""
+        return str(getattr(self.request, "model", "default"))
+
 
 class Accounts:
     """The work done for each person.

@@ -9,9 +9,21 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
-from sqlalchemy import Engine, ForeignKey, Text, create_engine, event, inspect, select
+from sqlalchemy import (
+    ColumnElement,
+    CursorResult,
+    Engine,
+    Executable,
+    ForeignKey,
+    Text,
+    and_,
+    create_engine,
+    event,
+    inspect,
+    select,
+)
 from sqlalchemy.exc import DatabaseError, SQLAlchemyError
 from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column, relationship, sessionmaker
 
@@ -246,6 +258,16 @@ def locked(session: Session) -> None:
         session: that has not read or written anything yet.
     """
     session.connection().exec_driver_sql("BEGIN IMMEDIATE")
+
+
+def owned(table: type[Run] | type[Study], owner: str) -> ColumnElement[bool]:
+    """What belongs to somebody: nothing where there is nobody."""
+    return and_(table.owner == owner, table.owner != "")
+
+
+def changed(session: Session, statement: Executable) -> int:
+    """Executes a statement; returns how many rows it has changed or deleted."""
+    return cast(CursorResult[Any], session.execute(statement)).rowcount
 
 
 def sentence_of(error: Exception) -> InputError:

@@ -10,10 +10,9 @@ import shutil
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
-from sqlalchemy import CursorResult, delete, select, update
+from sqlalchemy import delete, select, update
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
@@ -25,7 +24,7 @@ from webdemo.server.audit import audit, fingerprint
 from webdemo.ui.history import Opened, PublicPage
 from webdemo.view.thumbnail import thumbnail
 
-from .database import Database, Run, Share, entry_of, fields_of, locked, sentence_of, sentences
+from .database import Run, Share, changed, entry_of, fields_of, locked, owned, sentence_of, sentences
 from .folders import whole
 from .storage import ROW_BYTES, RUN_BYTES, Storage, forget, weight_of
 
@@ -52,29 +51,16 @@ class History:
     anybody.
 
     Args:
-        database: where their rows are.
-        folder: holds a folder a run.
-        storage: counts what people store, and makes room; by default with no limit for one person.
+        storage: knows their rows and their folders, counts what people store, and makes room.
         keep_days: age in days at which a run is removed unless it is a favourite.
         publish_days: for which a public page lasts; 0 where there are none.
-        clock: gives seconds since 1970.
     """
 
-    def __init__(
-        self,
-        database: Database,
-        folder: Path,
-        *,
-        storage: Storage | None = None,
-        clock: Callable[[], float] = time.time,
-        keep_days: float = 30,
-        publish_days: float = 30,
-    ) -> None:
-        self.database, self.folder = database, folder
-        self.storage = storage or Storage(database, folder)
-        self.clock = clock
-        self._began, self._since = clock() - time.monotonic(), time.monotonic()
+    def __init__(self, storage: Storage, *, keep_days: float = 30, publish_days: float = 30) -> None:
+        self.storage, self.database, self.folder = storage, storage.database, storage.motions
         self.keep_days, self.publish_days = keep_days, publish_days
+        self.clock: Callable[[], float] = time.time
+        self._began, self._since = time.time() - time.monotonic(), time.monotonic()
 
     # ---- while a run goes on ---------------------------------------------------------------------
 
@@ -159,7 +145,7 @@ class History:
         lost = update(Run).where(Run.state == "running")
         lost = lost.values(state="interrupted", message="The server stopped while this ran: run it again.")
         with self.database.session.begin() as session:
-            count = cast(CursorResult[Any], session.execute(lost)).rowcount
+            count = changed(session, lost)
         self._sweep()
         return count
 
@@ -172,16 +158,6 @@ class History:
                 shutil.rmtree(path, ignore_errors=True)
 
     # ---- for those who know an id or a link ------------------------------------------------------
-
-    @sentences()
-    def open(self, key: str, owner: str) -> Opened:
-        """A run by its id, for its owner, or by a link, for anybody.
-
-        Raises:
-            InputError: the same sentence for an unknown run, another person's run and an expired link, to reveal
-                nothing; a different one for the owner's run without a result.
-        """
-        return self._opened(self._shown(key, owner))
 
     @sentences()
     def _shown(self, key: str, owner: str) -> Run:
@@ -243,14 +219,15 @@ class History:
     def revoke(self, run: str, owner: str) -> int:
         """Ends the link to a run; returns how many there were."""
         with self.database.session.begin() as session:
-            ended = _end(session, Share.run_id == self._own(session, run, owner).id, ~Share.public)
+            mine = self._own(session, run, owner)
+            ended = changed(session, delete(Share).where(Share.run_id == mine.id, ~Share.public))
         audit("links-ended", run=run, count=ended)
         return ended
 
     @sentences()
     def pages(self, owner: str) -> Sequence[PublicPage]:
         """The owner's public pages that have not ended, newest first."""
-        mine = (Run.owner == owner, Run.owner != "", Run.removed.is_(None), Share.public, Share.until > time.time())
+        mine = (owned(Run, owner), Run.removed.is_(None), Share.public, Share.until > time.time())
         query = select(Share).join(Run).where(*mine).order_by(Share.created.desc(), Share.key)
         with self.database.session() as session:
             return [_page(share) for share in session.scalars(query)]
@@ -258,9 +235,9 @@ class History:
     @sentences()
     def end_page(self, key: str, owner: str) -> None:
         """Ends a public page; raises InputError if it is not the owner's."""
-        mine = select(Run.id).where(Run.owner == owner, Run.owner != "")
+        mine = select(Run.id).where(owned(Run, owner))
         with self.database.session.begin() as session:
-            if not _end(session, Share.key == key, Share.public, Share.run_id.in_(mine)):
+            if not changed(session, delete(Share).where(Share.key == key, Share.public, Share.run_id.in_(mine))):
                 raise InputError("You have no such public page: reload the list.")
         audit("page-ended", link=fingerprint(key))
 
@@ -350,10 +327,6 @@ class History:
             curves: dict[str, Any] = {name: tuple(value) for name, value in kept.items() if name != "past_frames"}
             return PredictResult(**whole, truth=truth, past_frames=kept["past_frames"], **curves)
         return Result(**whole)
-
-
-def _end(session: Session, *where: Any) -> int:
-    return cast(CursorResult[Any], session.execute(delete(Share).where(*where))).rowcount
 
 
 def _page(share: Share) -> PublicPage:

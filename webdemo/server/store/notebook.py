@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import re
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from webdemo.server.audit import audit
 from webdemo.ui.history import Entry, Found, Kept, Opened, Search, Usage
 from webdemo.ui.visitor import Visitor
 
-from .database import Run, entry_of, fields_of, locked, sentences
+from .database import Run, entry_of, fields_of, locked, owned, sentences
 from .history import History
 from .storage import weight_of
 
@@ -49,9 +50,7 @@ class Notebook(History):
     @sentences()
     def search(self, owner: str, wanted: Search) -> Found:
         """The owner's runs that fit, newest first."""
-        if not owner:
-            return Found((), 0)
-        mine = (Run.owner == owner, Run.removed.is_(None))
+        mine = (owned(Run, owner), Run.removed.is_(None))
         fit = (*mine, Run.part_of == "", *_conditions(wanted))  # a part of a grid has no card of its own
         query = select(Run).where(*fit).order_by(Run.created.desc(), Run.id).limit(min(max(wanted.limit, 1), 500))
         with self.database.session() as session:
@@ -70,7 +69,12 @@ class Notebook(History):
             return entry_of(self._own(session, run, owner))
 
     def open(self, key: str, owner: str) -> Opened:
-        """See :meth:`History.open`; also how the tab was set, and what the run was compared with."""
+        """A run by its id, for its owner, or by a link, for anybody; how its tab was set, what it was compared with.
+
+        Raises:
+            InputError: the same sentence for an unknown run, another person's run and an expired link, to reveal
+                nothing; a different one for the owner's run without a result.
+        """
         run = self._shown(key, owner)
         opened, kept = self._opened(run), fields_of(run.kept)
         mine = bool(owner) and owner == run.owner  # a link shows the motion, not the file that it began with
@@ -81,7 +85,7 @@ class Notebook(History):
         beside = []
         for other in kept.get("compared", ())[:MOST_BESIDE]:
             with suppress(InputError):  # it was removed meanwhile
-                beside.append(super().open(str(other), run.owner))
+                beside.append(self._opened(self._shown(str(other), run.owner)))
         state = Kept(controls=kept.get("controls", {}), people=tuple(people), compared=tuple(kept.get("compared", ())))
         return replace(opened, kept=state, beside=tuple(beside))
 
@@ -93,29 +97,26 @@ class Notebook(History):
         record: dict[str, Any] = {"controls": dict(kept.controls), "compared": list(kept.compared)}
         if len(json.dumps(record)) > LARGEST_KEPT:
             return
+        together = (run, *kept.compared[:MOST_BESIDE])
         with self.database.session() as session:
-            self._own(session, run, owner)
+            for each in together:
+                self._own(session, each, owner)
         folder = self.folder / run
         added = self._keep_people(kept, folder)
-        try:
-            gone = self._note_kept(run, owner, record, kept.compared[:MOST_BESIDE])
-        except InputError:  # the files alone are left out
-            for path in added:
-                path.unlink(missing_ok=True)
-            gone = self._note_kept(run, owner, record, kept.compared[:MOST_BESIDE])
-        self.storage.drop(gone)
-
-    def _note_kept(self, run: str, owner: str, record: Mapping[str, Any], beside: Sequence[str]) -> list[str]:
-        """Writes the record of how a tab was set; returns the runs that made way for the files beside it."""
         with self.database.session.begin() as session:
             locked(session)
-            mine = self._own(session, run, owner)
-            weight = weight_of(mine, self.folder / run)
-            gone = self.storage.make_room(session, owner, mine.address, weight - mine.size, spare=[run, *beside])
-            mine.size, mine.kept = weight, json.dumps(record)
+            mine, *beside = (self._own(session, each, owner) for each in together)
+            room = partial(self.storage.make_room, session, owner, mine.address, spare=together)
+            try:
+                gone = room(weight_of(mine, folder) - mine.size)
+            except InputError:  # the files alone are left out
+                for path in added:
+                    path.unlink(missing_ok=True)
+                gone = room(weight_of(mine, folder) - mine.size)
+            mine.size, mine.kept = weight_of(mine, folder), json.dumps(record)
             for other in beside:
-                self._own(session, other, owner).part_of = run
-        return gone
+                other.part_of = run
+        self.storage.drop(gone)
 
     @staticmethod
     def _keep_people(kept: Kept, folder: Path) -> list[Path]:
@@ -172,7 +173,7 @@ class Notebook(History):
     @sentences()
     def restore(self, runs: Sequence[str], owner: str) -> int:
         """Brings removed runs back that are not deleted yet; returns how many."""
-        wanted = (Run.owner == owner, Run.owner != "", Run.id.in_(list(runs)), Run.removed.is_not(None))
+        wanted = (owned(Run, owner), Run.id.in_(list(runs)), Run.removed.is_not(None))
         with self.database.session.begin() as session:
             keys = list(session.scalars(select(Run.id).where(*wanted)))
             for run in keys:
@@ -189,14 +190,14 @@ class Notebook(History):
     @sentences()
     def weight(self, owner: str, runs: Sequence[str]) -> float:
         """Bytes of runs, or of all of them for none given: about those that :meth:`export` writes."""
-        wanted = (Run.owner == owner, Run.owner != "", _with_parts(*runs) if runs else true())
+        wanted = (owned(Run, owner), _with_parts(*runs) if runs else true())
         with self.database.session() as session:
             return session.scalar(select(func.sum(Run.size)).where(*wanted)) or 0
 
     @sentences()
     def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
         """Writes the motions of finished runs, or of all for none given, into one .zip; returns how many runs."""
-        mine = (Run.owner == owner, Run.owner != "", Run.state == "done", Run.removed.is_(None))
+        mine = (owned(Run, owner), Run.state == "done", Run.removed.is_(None))
         query = select(Run).where(*mine, _with_parts(*runs) if runs else true()).order_by(Run.created)
         with self.database.session() as session:
             entries = [entry_of(run) for run in session.scalars(query)]

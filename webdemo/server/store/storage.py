@@ -12,9 +12,9 @@ import shutil
 import tempfile
 from collections.abc import Collection
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
-from sqlalchemy import CursorResult, delete, func, select
+from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from motion import InputError
@@ -23,7 +23,7 @@ from webdemo.server.accounts.visitors import digest
 from webdemo.ui.history import Usage
 from webdemo.ui.visitor import Visitor
 
-from .database import DISK_FULL, Database, Run, Study, is_full, sentences
+from .database import DISK_FULL, Database, Run, Study, changed, is_full, owned, sentences
 from .folders import make_folder
 from .scratch import Scratch
 
@@ -216,7 +216,7 @@ def _evictable(session: Session, owner: str, spare: Collection[str]) -> list[tup
     """A person's runs that may make way, with their bytes and whether their owner has removed them; first those."""
     rows = session.execute(
         select(Run.id, Run.size, Run.favourite, Run.removed)
-        .where(Run.owner == owner, Run.owner != "", Run.state != "running")
+        .where(owned(Run, owner), Run.state != "running")
         .order_by(Run.created, Run.id)
     )
     runs = [
@@ -229,4 +229,4 @@ def _evictable(session: Session, owner: str, spare: Collection[str]) -> list[tup
 
 def forget(session: Session, run: str) -> bool:
     """Deletes a run with what shows it to others; False if that was done already."""
-    return bool(cast(CursorResult[Any], session.execute(delete(Run).where(Run.id == run))).rowcount)
+    return bool(changed(session, delete(Run).where(Run.id == run)))

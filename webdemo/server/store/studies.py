@@ -10,7 +10,7 @@ import secrets
 import shutil
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple, cast
@@ -25,13 +25,12 @@ from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
 from webdemo.study import FIRST, SECOND, TIE, Pair, StudyEntry, as_shown
 
-from .database import Database, Study, Vote, locked, sentences
+from .database import Study, Vote, locked, owned, sentences
 from .storage import Storage
 
 LONGEST_QUESTION, LONGEST_NAME = 300, 100
 MOST_VOTES = 20_000
 """Votes of a study: a stranger with ever new cookies could send any number."""
-Clock = Callable[[], float]
 COLUMNS = ("voter", "pair", "sentence", "left", "right", "chosen", "time")
 _PRESSED = {"1": FIRST, "2": SECOND, "=": TIE}
 """Keys and their answers where the first run is on the left."""
@@ -50,17 +49,12 @@ class Studies:
     """Keeps studies. The owner reaches them by their ids, voters by their keys.
 
     Args:
-        database: where their rows are.
+        storage: knows their rows, counts what people store, and makes room.
         folder: holds a folder of motions a study.
-        storage: counts what people store, and makes room; by default with no limit for one person.
-        clock: gives seconds since 1970.
     """
 
-    def __init__(
-        self, database: Database, folder: Path, storage: Storage | None = None, clock: Clock = time.time
-    ) -> None:
-        self.database, self.folder, self.clock = database, folder, clock
-        self.storage = storage or Storage(database, folder)
+    def __init__(self, storage: Storage, folder: Path) -> None:
+        self.storage, self.database, self.folder = storage, storage.database, folder
 
     # ---- the owner -------------------------------------------------------------------------------
 
@@ -82,7 +76,7 @@ class Studies:
             raise InputError(f"The question has {len(question)} characters: write 1 to {LONGEST_QUESTION}.")
         motions = [as_shown(motion) for pair in pairs for motion in (pair.first, pair.second)]
         row = Study(id=secrets.token_hex(12), owner=owner, key=secrets.token_urlsafe(18), question=question)
-        row.runs, row.created = json.dumps([name[:LONGEST_NAME] for name in runs]), self.clock()
+        row.runs, row.created = json.dumps([name[:LONGEST_NAME] for name in runs]), time.time()
         row.captions = json.dumps([pair.caption for pair in pairs])
         row.address = digest(address) if address else ""
         with self.database.session() as session:
@@ -109,7 +103,7 @@ class Studies:
     @sentences()
     def mine(self, owner: str) -> Sequence[StudyEntry]:
         """The owner's studies with the count of their votes, newest first."""
-        mine = select(Study).where(Study.owner == owner, Study.owner != "").order_by(Study.created.desc())
+        mine = select(Study).where(owned(Study, owner)).order_by(Study.created.desc())
         with self.database.session() as session:
             return [_entry(row, _votes(session, row)) for row in session.scalars(mine).all()]
 
@@ -117,7 +111,7 @@ class Studies:
     def delete(self, study: str, owner: str) -> None:
         """Deletes a study with its votes and its motions."""
         with self.database.session.begin() as session:
-            session.delete(_find(session, *_mine(study, owner)))
+            session.delete(_find(session, Study.id == study, owned(Study, owner)))
         shutil.rmtree(self.folder / study, ignore_errors=True)
         audit("study-deleted", study=study)
 
@@ -125,7 +119,7 @@ class Studies:
     def export(self, study: str, owner: str, file: Path) -> int:
         """Writes all votes as .csv; returns how many. People are numbers; no cell is what a spreadsheet computes."""
         with self.database.session() as session:
-            row = _find(session, *_mine(study, owner))
+            row = _find(session, Study.id == study, owned(Study, owner))
             votes = _votes(session, row)
         runs, captions = json.loads(row.runs), json.loads(row.captions)
         voters: dict[str, int] = {}
@@ -181,7 +175,7 @@ class Studies:
                     raise InputError("This study has all the votes that it takes: thank you all the same.")
                 if swapped:
                     answer = {FIRST: SECOND, SECOND: FIRST}.get(answer, answer)
-                told = {"answer": answer, "swapped": swapped, "at": self.clock()}
+                told = {"answer": answer, "swapped": swapped, "at": time.time()}
                 session.add(Vote(study_id=row.id, person=voter, pair=number, **told))
         except IntegrityError:
             raise InputError("You have voted on this pair already: one vote for each pair counts.") from None
@@ -205,10 +199,6 @@ def _find(session: Session, *where: ColumnElement[bool]) -> Study:
     if row is None:
         raise InputError("There is no such study, or it was deleted: ask for its link, or reload the page.")
     return row
-
-
-def _mine(study: str, owner: str) -> tuple[ColumnElement[bool], ...]:
-    return Study.id == study, Study.owner == owner, Study.owner != ""
 
 
 def _votes(session: Session, row: Study) -> Sequence[Vote]:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import gradio as gr
 
 from acts import Act, lexicon
 from acts.captions import short
-from webdemo.ui.history import HistoryLike, Search
+from webdemo.ui.history import Search
 from webdemo.ui.visitor import visitor
 
 from .part import Part
+
+if TYPE_CHECKING:
+    from webdemo.ui.context import Notebook
 
 _RUNS = 200
 """The newest runs, which are searched by their titles; *History* searches all of them."""
@@ -29,12 +32,12 @@ class Finder(Part):
     styled = True
     declared: ClassVar = {"known": None}
 
-    def wire(self, history: HistoryLike, **quiet: Any) -> None:
+    def wire(self, history: Notebook, **quiet: Any) -> None:
         """Answers the browser, which asks whenever the dialog opens; ``quiet`` are the options of the page's events."""
         self.input(lambda: gr.update(known=known(history)), outputs=self, concurrency_limit=4, **quiet)
 
 
-def known(history: HistoryLike) -> dict[str, Any]:
+def known(history: Notebook) -> dict[str, Any]:
     """What the search finds.
 
     Returns:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Annotated, Any, TypeAlias
@@ -12,7 +11,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from motion import InputError
 from webdemo.inference.methods import label_of
 from webdemo.ui.history import Entry, Found, Search
-from webdemo.ui.text.words import counted, method_label, settings
+from webdemo.ui.text.words import counted, day, method_label, settings
 
 from .accepts import Finite, Flag, Sent, Text
 from .part import Part
@@ -132,7 +131,7 @@ def facts(entry: Entry) -> str:
     """One line for a run: by which method, how long, its seed, when, and marks."""
     asked = entry.request
     parts = made_by(method_label(asked), asked)
-    parts.append(time.strftime("%d %b %Y %H:%M", time.localtime(entry.created)))
+    parts.append(day(entry.created, " %H:%M"))
     parts += [_MARKS[entry.state]] if entry.state in _MARKS else []
     parts += [counted(entry.links, "link")] if entry.links else []
     return " · ".join(parts)

@@ -106,7 +106,7 @@ class GenerateTab(JobTab):
             return asked
         by_class = takes_class(asked["model"])
         if by_class and "guidance" not in cell:
-            asked["guidance"] = method(asked["model"]).default("guidance", asked["guidance"])
+            asked["guidance"] = method(asked["model"]).defaults.get("guidance", asked["guidance"])
         if by_class and not takes_class(fields["model"]):
             asked["class_name"] = _class_in(str(asked.get("prompt") or ""), label_of(asked["model"]))
         elif not by_class and takes_class(fields["model"]):
@@ -192,7 +192,7 @@ class GenerateTab(JobTab):
         return (
             by_sentence,
             gr.update(visible=by_class),
-            gr.update(value=chosen.default("guidance", GenerateRequest.guidance)),
+            gr.update(value=chosen.defaults.get("guidance", GenerateRequest.guidance)),
             gr.update(value=chosen.steps),
             *(by_sentence,) * 3,
         )

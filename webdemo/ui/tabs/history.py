@@ -14,7 +14,7 @@ from webdemo.ui.components.fields import address_field
 from webdemo.ui.components.notebook import UNKNOWN, Action, NotebookView, shown
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
-from webdemo.ui.history import Found, HistoryLike, Opened, Search
+from webdemo.ui.history import Found, Opened, Search
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import counted, error_line, link_line, text
@@ -49,7 +49,7 @@ class HistoryTab:
 
     def __init__(self, page: PageContext, jobs: Mapping[str, JobTab], tabs: gr.Tabs) -> None:
         self.page, self.jobs, self.tabs = page, jobs, tabs
-        self.history: HistoryLike = page.history
+        self.history = page.history
         self.files = FilesPanel(page, self.refresh)
 
     # ---- layout ----------------------------------------------------------------------------------
@@ -70,7 +70,7 @@ class HistoryTab:
             self.who = gr.HTML(elem_id="history-who")
             self.study = StudyPanel(self.page, self.line)
             self.study.build()
-            self.sharing = SharingPanel(self.history, self.line)
+            self.sharing = SharingPanel(self.page, self.line)
             self.sharing.build()
             self.files.build()
         self.removed = gr.State([])

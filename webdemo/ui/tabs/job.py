@@ -26,7 +26,7 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened
 from webdemo.ui.text.panels import effect_line, made_line, notes_lines, readout_panel, status
 from webdemo.ui.text.texts import say
-from webdemo.ui.text.words import cancelled_line, error_line, progress_line
+from webdemo.ui.text.words import cancelled_line, day, error_line, progress_line
 from webdemo.ui.visitor import visitor
 
 from .grids import BASIC, PRESETS, Grids, Kind
@@ -376,9 +376,9 @@ class JobTab(ABC):
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Updates that show a kept run here, by the components of this tab."""
         asked = run.entry.request
-        made = time.strftime("%Y-%m-%d %H:%M", time.gmtime(run.entry.created))
         shown = self.shown(run.result, run.entry.title)
-        shown["line"] = status(f"Made on {made} UTC.", tone="done") + notes_lines({"": run.result})
+        made = day(run.entry.created, " %H:%M")
+        shown["line"] = status(f"Made on {made}.", tone="done") + notes_lines({"": run.result})
         known = {**asked, **run.kept.controls}
         values = {name: known[name] for name in self._knobs() if name in known}
         return {

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
@@ -33,9 +32,9 @@ from .sampling import seed_field
 from .source import SourcePanel
 
 
-def predict_choices(weights: Path | None = None) -> list[tuple[str, str]]:
+def predict_choices() -> list[tuple[str, str]]:
     """(label, name) of the methods of prediction whose weights are there, or that need none."""
-    return [(method.label, method.name) for method in installed("predict", weights)]
+    return [(method.label, method.name) for method in installed("predict")]
 
 
 def _draws(model: str) -> bool:

@@ -28,6 +28,7 @@ from webdemo.ui.components.fields import address_field
 from webdemo.ui.components.film import READ_PLAYER, link_address, make_figure, make_film
 from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.context import PageContext
+from webdemo.ui.places import FILMS
 from webdemo.ui.text.panels import method_line, status
 from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, link_line
@@ -165,7 +166,7 @@ class Results:
 
     def wire(self, line: gr.HTML) -> None:
         """Wires what hands the result out; ``line`` says how that went."""
-        drawn: dict[str, Any] = {"concurrency_limit": 1, "concurrency_id": "film", "trigger_mode": "once", **QUIET}
+        drawn: dict[str, Any] = {"concurrency_limit": FILMS, "concurrency_id": "film", "trigger_mode": "once", **QUIET}
         shown: dict[str, Any] = {"inputs": [self.own, self.player_state], "js": READ_PLAYER}
         for key, button in self.drawn.items():
             made = button.click(partial(self.draw, key), outputs=[line, button, self.saved], **shown, **drawn)

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import gradio as gr
 
 from webdemo.ui.components.fields import address_field
 from webdemo.ui.components.notebook import Action
-from webdemo.ui.history import HistoryLike
+from webdemo.ui.context import PageContext
 from webdemo.ui.public_html import frame_code
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.texts import say
+from webdemo.ui.text.words import day
 from webdemo.ui.visitor import visitor
 
 from .results import QUIET, Parts, said
@@ -22,12 +22,12 @@ class SharingPanel:
     """The part of the History tab where public pages are made and ended.
 
     Args:
-        history: keeps the pages.
+        page: what the tabs share; its history keeps the pages.
         line: where the tab says what was done.
     """
 
-    def __init__(self, history: HistoryLike, line: gr.HTML) -> None:
-        self.history, self.line = history, line
+    def __init__(self, page: PageContext, line: gr.HTML) -> None:
+        self.history, self.line = page.history, line
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -61,7 +61,7 @@ class SharingPanel:
     def publish(self, event: gr.EventData) -> Parts:
         """Makes a page of the run that is chosen in the notebook, and shows its address."""
         page = self.history.publish(Action.read(event._data).one, visitor().owner)
-        line = f"Published. Anybody with the address can watch until {_day(page.until)}."
+        line = f"Published. Anybody with the address can watch until {day(page.until)}."
         return self._shown(page.key) | {self.fold: gr.update(open=True), self.line: status(line, tone="done")}
 
     @said
@@ -78,7 +78,7 @@ class SharingPanel:
         return {
             self.reading: gr.update(visible=True),
             self.which: gr.update(
-                choices=[(f"{page.title[:60]} (until {_day(page.until)})", page.key) for page in mine.values()],
+                choices=[(f"{page.title[:60]} (until {day(page.until)})", page.key) for page in mine.values()],
                 value=link.key,
             ),
             self.link: f"{who.base}share/{link.key}",
@@ -91,7 +91,3 @@ class SharingPanel:
         self.history.end_page(key or "", visitor().owner)
         line = status("The page has ended: its address shows nothing any more.", tone="done")
         return self._shown(None) | {self.line: line}
-
-
-def _day(moment: float) -> str:
-    return time.strftime("%d %b %Y", time.localtime(moment)).lstrip("0")

@@ -26,7 +26,7 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
     """The line under the buttons.
 
     Args:
-        line: one sentence in English, or a few; the visitor gets it in their language.
+        line: one sentence, or a few.
         tone: "quiet", "note", "busy", "done", "warning" or "error"; errors are announced at once.
     """
     if not line:

@@ -90,11 +90,15 @@ def error_line(error: Exception) -> str:
     return f"Something went wrong inside the program ({type(error).__name__}); {where}. Try again."
 
 
+def day(moment: float, clock: str = "") -> str:
+    """A moment in seconds since 1970 as "5 Mar 2026" at the server, or with its time where ``clock`` is " %H:%M"."""
+    return time.strftime(f"%d %b %Y{clock}", time.localtime(moment)).lstrip("0")
+
+
 def link_line(until: float) -> str:
     """A sentence on who can open a new link, and until when."""
-    last = time.strftime("%d %B %Y", time.localtime(until)).lstrip("0")
     signed = " and can sign in here" if visitor().account else ""
-    return f"Anyone who has this link{signed} can see the motion until {last}, unless you end its links first."
+    return f"Anyone who has this link{signed} can see the motion until {day(until)}, unless you end its links first."
 
 
 def counted(number: int, what: str) -> str:
