@@ -77,8 +77,8 @@ def ankle_moved(person: Array, leg: Sequence[int], goal: Array, pole: Array, *, 
     """Takes an ankle of a person (…, J, 3) to a goal (…, 3), in place: the knee follows, the foot keeps its way."""
     hip, knee, ankle, toe = leg
     foot = person[..., toe, :] - person[..., ankle, :]
-    limb = (person[..., joint, :] for joint in (hip, knee, ankle))
-    person[..., knee, :], person[..., ankle, :] = solve_two_bones(*limb, goal, pole, soft=soft)
+    at, bend, end = (person[..., joint, :] for joint in (hip, knee, ankle))
+    person[..., knee, :], person[..., ankle, :] = solve_two_bones(at, bend, end, goal, pole, soft=soft)
     person[..., toe, :] = person[..., ankle, :] + foot
 
 

@@ -235,7 +235,7 @@ class Fixture:
         return share
 
 
-def placed_leaf(leaf: Leaf, place: Array, yaw: float, share: Array) -> Thing:
+def placed_leaf(leaf: Leaf, place: Array, yaw: float | Array, share: Array) -> Thing:
     """A moving part of a fixture at ``place`` (3,) turned by ``yaw``, open by a share (T,)."""
     x, y, z, turn = ((1 - share) * shut + share * wide for shut, wide in zip(leaf.closed, leaf.opened, strict=True))
     places = np.stack([x, y, z], axis=1) @ heading_matrix(yaw).T + place

@@ -116,7 +116,7 @@ class Thing:
         object.__setattr__(self, "name", self.name or self.kind)
 
     @classmethod
-    def at_rest(cls, kind: str, mesh: Mesh, place: Array, yaw: float, frames: int, name: str = "") -> Thing:
+    def at_rest(cls, kind: str, mesh: Mesh, place: Array, yaw: float | Array, frames: int, name: str = "") -> Thing:
         """A thing that stands still, turned by ``yaw`` radians about the vertical from +Z towards +X."""
         turned = np.array([[np.cos(yaw), 0.0, np.sin(yaw)], [0.0, 1.0, 0.0], [-np.sin(yaw), 0.0, np.cos(yaw)]])
         return cls(kind, mesh, np.tile(place, (frames, 1)), np.tile(turned, (frames, 1, 1)), name)
