@@ -16,6 +16,9 @@ from pydantic_core.core_schema import CoreSchema, literal_schema
 
 Metres = Annotated[float, Field(ge=0, le=20)]
 Part = Literal["", "head", "shoulder", "back", "chest", "waist", "arm", "hand", "leg", "foot"]
+Way = Literal[
+    "to", "away", "past", "around", "behind", "beside", "along", "after", "back", "aside", "ahead", "to and fro"
+]
 
 
 class _Named:
@@ -50,9 +53,7 @@ class Go(_Shape):
     """
 
     do: Literal["go"] = "go"
-    way: Literal[
-        "to", "away", "past", "around", "behind", "beside", "along", "after", "back", "aside", "ahead", "to and fro"
-    ]
+    way: Way
     speed: Annotated[float, Field(gt=0, le=4)] = 1.1
     turns: Annotated[float, Field(gt=0, le=5)] = 0.5
     metres: Metres = 0.0
@@ -234,22 +235,7 @@ class Words(_Shape):
     do: Literal["words"] = "words"
 
 
-Shape = Annotated[
-    Go
-    | Turn
-    | Stay
-    | Place
-    | Posture
-    | Jump
-    | Gesture
-    | Touch
-    | Hold
-    | Link
-    | Pull
-    | Lift
-    | Strike
-    | Limb
-    | Figure
-    | Words,
-    Field(discriminator="do"),
-]
+_OnTheFloor = Go | Turn | Stay | Place
+_OfOneself = Posture | Jump | Gesture | Limb | Figure | Words
+_WithTheOther = Touch | Hold | Link | Pull | Lift | Strike
+Shape = Annotated[_OnTheFloor | _OfOneself | _WithTheOther, Field(discriminator="do")]

@@ -54,6 +54,11 @@ class TokenLayout:
         """The most frames that ``tokens`` tokens can decode to."""
         return (tokens * self.knots_per_token - _SPLINE_SPAN) * self.frames_per_knot + 1
 
+    def filled_tokens(self, frames: int) -> int:
+        """Tokens that ``frames`` frames fill, where what is over at the end is left out."""
+        tokens = self.num_tokens(frames)
+        return tokens - (self.num_frames(tokens) > frames)
+
     def basis(self, tokens: int) -> Tensor:
         """(frames, knots) float32 spline basis: frames = basis @ control points."""
         return _basis(self.num_frames(tokens), self.frames_per_knot)

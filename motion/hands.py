@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InputError
+from .skeleton import SIDES
 from .smoothing import smoothstep
 from .vectors import Array, rotations_by
 
-SIDES = ("left", "right")
 FINGERS = ("thumb", "index", "middle", "ring", "pinky")
 NUMBERS = 20
 """Numbers of a shape: bends of 15 joints, then the closing of five fingers."""

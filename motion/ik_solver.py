@@ -122,7 +122,9 @@ class _Problem:
         self.ankles = [SMPL22.index(f"{side}_ankle") for side in ("left", "right")]
         self.toes = [SMPL22.index(f"{side}_foot") for side in ("left", "right")]
         self.level = self._level_weights() if not set(self.toes) & set(self.seen) else None
-        self.pairs = np.array([(turn, joint) for turn in range(len(_TURNING)) for joint in _below(_TURNING[turn])])
+        self.pairs = np.array(
+            [(turn, joint) for turn in range(len(_TURNING)) for joint in SMPL22.below(_TURNING[turn])]
+        )
 
     def _level_weights(self) -> Array:
         """(T, 2) weights of keeping an unseen foot level: strong while its ankle is low."""
@@ -241,14 +243,6 @@ class _Problem:
             blocks[:, 0] += weighted @ rows
             gradient += (weighted @ self._tilt(state)[..., None])[..., 0]
         return _to_bands(blocks), gradient
-
-
-def _below(joint: int) -> list[int]:
-    """All joints that hang below one."""
-    below: list[int] = []
-    for child in SMPL22.children[joint]:
-        below += [child, *_below(child)]
-    return below
 
 
 def _to_bands(blocks: Array) -> Array:

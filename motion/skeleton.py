@@ -16,6 +16,9 @@ import numpy as np
 
 from .vectors import Array
 
+SIDES = ("left", "right")
+OTHER_SIDE = {"left": "right", "right": "left"}
+
 
 class Tree:
     """Joints, each of which hangs on another.
@@ -71,6 +74,10 @@ class Skeleton(Tree):
             children[parent].append(joint)
         return tuple(tuple(joints) for joints in children)
 
+    def below(self, joint: int) -> list[int]:
+        """All joints that hang below one."""
+        return [each for child in self.children[joint] for each in (child, *self.below(child))]
+
     @cached_property
     def bone_lengths(self) -> Array:
         """(J,) length of the bone that ends in each joint in metres, 0 for the root."""
@@ -85,9 +92,8 @@ class Skeleton(Tree):
     def mirror(self) -> tuple[int, ...]:
         """For every joint, the joint that takes its place when left and right are swapped."""
         index = {name: joint for joint, name in enumerate(self.joint_names)}
-        sides = {"left": "right", "right": "left"}
         parts = (name.partition("_") for name in self.joint_names)
-        others = (sides.get(side, side) + mark + rest for side, mark, rest in parts)
+        others = (OTHER_SIDE.get(side, side) + mark + rest for side, mark, rest in parts)
         return tuple(index.get(other, joint) for joint, other in enumerate(others))
 
     @cached_property
@@ -135,11 +141,13 @@ SMPL22 = _topology(
 """The 22 body joints of SMPL with the proportions of an average adult; what every network here speaks."""
 
 FEET = tuple(SMPL22.index(n) for n in ("left_ankle", "left_foot", "right_ankle", "right_foot"))
-ARMS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("shoulder", "elbow", "wrist")) for side in ("left", "right"))
+ARMS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("shoulder", "elbow", "wrist")) for side in SIDES)
 """Shoulder, elbow and wrist of the left arm and of the right one."""
-LEGS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("hip", "knee", "ankle", "foot")) for side in ("left", "right"))
+LEGS = tuple(tuple(SMPL22.index(f"{side}_{n}") for n in ("hip", "knee", "ankle", "foot")) for side in SIDES)
 """Hip, knee, ankle and toe of the left leg and of the right one."""
 TOES = [leg[-1] for leg in LEGS]
+HEAD_TOP = 0.16
+"""Metres from the joint of the head to its top, along the neck (15 to 18 cm in the bodies that are drawn)."""
 
 
 def _chains(name: str, chains: str) -> Skeleton:
@@ -180,8 +188,8 @@ NTU25 = _chains(
 )
 """Kinect v2 / NTU RGB+D 25 joints in file order."""
 
-_LEFT_ARM, _RIGHT_ARM = (f"{side}_shoulder {side}_elbow {side}_wrist" for side in ("left", "right"))
-_LEFT_LEG, _RIGHT_LEG = (f"pelvis {side}_hip {side}_knee {side}_ankle" for side in ("left", "right"))
+_LEFT_ARM, _RIGHT_ARM = (f"{side}_shoulder {side}_elbow {side}_wrist" for side in SIDES)
+_LEFT_LEG, _RIGHT_LEG = (f"pelvis {side}_hip {side}_knee {side}_ankle" for side in SIDES)
 _UPPER_BODY = f"pelvis spine1 spine3 neck head, spine3 {_LEFT_ARM}, spine3 {_RIGHT_ARM}"
 CMU17 = _chains("cmu17", f"{_LEFT_LEG}, {_RIGHT_LEG}, {_UPPER_BODY}")
 """The 17 joints that motion-prediction papers keep of CMU MoCap, in their order."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, TypeVar
 
 import numpy as np
@@ -35,6 +36,26 @@ def heading_of(way: Array) -> Array:
     return np.asarray(np.arctan2(way[..., 0], way[..., 2]))
 
 
+def bearing(line: Array) -> float:
+    """The heading in radians of a line (2,) over the floor, from +Z towards +X: what :func:`direction` takes."""
+    return math.atan2(line[0], line[1])
+
+
+def direction(heading: float | Array) -> Array:
+    """The unit vectors (…, 2), x and z, of headings (…) in radians from +Z towards +X."""
+    return np.stack([np.sin(heading), np.cos(heading)], axis=-1)
+
+
+def leftwards(heading: float | Array) -> Array:
+    """The unit vectors (…, 2), x and z, to the left of headings (…) in radians."""
+    return np.stack([np.cos(heading), -np.sin(heading)], axis=-1)
+
+
+def floor_points(places: Array) -> Array:
+    """(…, 3) the points on the floor of places (…, 2), x and z."""
+    return np.insert(places, 1, 0.0, axis=-1)
+
+
 def square_frame(up: Array, across: Array) -> Array:
     """(…, 3, 3) rotation whose Y column is ``up`` and whose X column is ``across`` made square to it; both (…, 3)."""
     y = unit(up)
@@ -57,6 +78,11 @@ def rotation_vectors(rotations: Array) -> Array:
 def slerp(first: Array, second: Array, share: Array) -> Array:
     """Rotations (…, 3, 3) a ``share`` (…,) of the shortest way from first to second; it is broadcast."""
     return first @ rotations_by(share[..., None] * rotation_vectors(np.swapaxes(first, -1, -2) @ second))
+
+
+def travelled(path: Array) -> Array:
+    """(N,) metres along a path (N, D) to each of its points."""
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=-1))])
 
 
 def floor_speed(place: Array, fps: float) -> Array:

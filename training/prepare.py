@@ -20,13 +20,15 @@ import torch
 from torch import Tensor
 
 from models.motion_tokens import TokenLayout, encode, foot_contacts, mirror_control
-from motion import SMPL22, InputError
+from motion import FPS, SMPL22, InputError
 from training.core.checkpoint import read_tensors, write_tensors
 from training.core.handedness import leading_hand
 from training.core.shell import exit_code
 from training.corpus.cues import Label
 
 ROOT_SCALE = 0.5  # metres
+LONGEST = 10.0
+"""Seconds of a scene; of a longer one the beginning is taken."""
 
 
 def sentence_lists(row: dict[str, Any]) -> tuple[list[str], list[str], list[str]]:
@@ -78,7 +80,7 @@ def load_corpus(folder: Path) -> tuple[np.ndarray, list[dict[str, Any]]]:
     return motions, index
 
 
-def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0, captions: int | None = None) -> Scenes:
+def prepare(folder: Path, layout: TokenLayout, captions: int | None = None) -> Scenes:
     """Fits control points to every scene of a corpus; scenes are cut to whole tokens.
 
     ``captions`` keeps that many of a training scene's sentences, drawn at random.
@@ -87,12 +89,9 @@ def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0, captio
     motions, index = load_corpus(folder)
     parts, rows, start = [], [], 0
     for entry in index:
-        frames = min(entry["frames"], int(max_seconds * 30) + 1)
-        tokens = layout.num_tokens(frames)
-        if layout.num_frames(tokens) > frames:
-            tokens -= 1
+        tokens = layout.filled_tokens(min(entry["frames"], round(LONGEST * FPS) + 1))
         frames = layout.num_frames(tokens)
-        if frames < 30:
+        if frames < FPS:
             continue
         motion = np.array(motions[entry["start"] : entry["start"] + frames], dtype=np.float32)
         positions = torch.from_numpy(motion).transpose(0, 1)
@@ -171,7 +170,7 @@ def _run(options: argparse.Namespace) -> None:
     layout = TokenLayout()
     scenes = joined([prepare(folder, layout, captions=options.captions) for folder in options.corpus])
     save(scenes, options.out)
-    seconds = len(scenes.control) * layout.frames_per_knot / 30
+    seconds = len(scenes.control) * layout.frames_per_knot / FPS
     print(f"{len(scenes.rows)} scenes, {seconds / 3600:.2f} hours, {options.out.stat().st_size / 1e6:.1f} MB")
 
 

@@ -17,16 +17,17 @@ import numpy as np
 from acts import Act, Plan
 from acts.checking import checked
 from acts.staging.recordings import RATE
-from motion import SMPL22, InputError
+from motion import FPS, SMPL22, InputError
 from motion.formats.files import replacing
 from motion.metrics.sentences.joints import Motion
+from motion.skeleton import FEET, SIDES
 from motion.transforms import canonicalize, heading, leading_wrist, mirrored, resample, turn
-from motion.vectors import Array
+from motion.vectors import FLAT, Array
 from training.core.shell import exit_code
 
 from .corpus.cues import SourceClip
 from .corpus.duets import HELD_OUT, danced, read_takes
-from .corpus.sources import FPS, load_sources
+from .corpus.sources import load_sources
 
 STILL = 0.2
 """Metres a second: slower than that in all joints, a body is still."""
@@ -34,7 +35,6 @@ MOST_STILL, MOST_STEPS = 0.6, 0.06
 """Shares of the frames in which the body is still, and in which a foot moves, at most."""
 PIECE = 180
 """Frames of a piece of a recording."""
-_FEET = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("ankle", "foot")]
 SHOWN = {
     "waves": ("wave", ("wave", "bye")),
     "up": ("raise-arm", ("raise-hand",)),
@@ -62,7 +62,7 @@ LASTS, TRAVELS, LIVELY = 180, 1.1, 0.6
 TOGETHER, JOINED = 360, 0.25
 """Frames of a dance of two, and metres between two hands that are joined in it."""
 NECK = SMPL22.index("neck")
-WRISTS, SHOULDERS = ([SMPL22.index(f"{side}_{j}") for side in ("left", "right")] for j in ("wrist", "shoulder"))
+WRISTS, SHOULDERS = ([SMPL22.index(f"{side}_{j}") for side in SIDES] for j in ("wrist", "shoulder"))
 LEANS, RAISED = 0.25, 0.1
 """Metres of the neck beside the pelvis, at most, and of a waving hand over the shoulder, at least."""
 
@@ -70,7 +70,7 @@ LEANS, RAISED = 0.25, 0.1
 def lively(positions: Array) -> bool:
     """True for a person (T, 22, 3) who moves while their feet stay."""
     speeds = np.linalg.norm(np.diff(positions.astype(float), axis=0), axis=-1) * FPS
-    still, steps = (speeds.max(-1) < STILL).mean(), (speeds[:, _FEET].max(-1) > STILL).mean()
+    still, steps = (speeds.max(-1) < STILL).mean(), (speeds[:, FEET].max(-1) > STILL).mean()
     return bool(still < MOST_STILL and steps < MOST_STEPS)
 
 
@@ -131,9 +131,9 @@ def looped(positions: Array) -> Array | None:
     if np.ptp(np.unwrap(turned)) > STRAIGHT:
         return None
     poses = turn(positions, -float(np.median(turned)))
-    left, right = (poses[:, SMPL22.index(f"{side}_ankle"), 2] for side in ("left", "right"))
+    left, right = (poses[:, SMPL22.index(f"{side}_ankle"), 2] for side in SIDES)
     passes = np.flatnonzero((left[:-1] < right[:-1]) & (left[1:] >= right[1:])) + 1
-    pelvis = poses[:, :1] * [1.0, 0.0, 1.0]
+    pelvis = poses[:, :1] * FLAT
     local = poses - pelvis
     pairs = [(i, j) for i in passes for j in passes if STRIDES[0] <= j - i <= STRIDES[1]]
     if not pairs:

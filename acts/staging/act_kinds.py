@@ -9,10 +9,11 @@ from acts import shapes
 from acts.lexicon import Entry, Lexicon, is_fixture
 from acts.plan import Act, other_of
 from acts.reading.vocabulary import vocabulary
+from motion.skeleton import SIDES
 
 from .gestures import GESTURES
 from .holds import COUPLE
-from .score import LOW, SIDES, Move, Strike
+from .score import LOW, Move, Strike, leaving
 
 _NEAR = frozenset(("touch", "fight", "dance", "care"))
 """Groups of the lexicon whose acts two people do within each other's reach."""
@@ -76,7 +77,10 @@ def is_near(act: Act, entry: Entry) -> bool:
 
 
 def reaches(act: Act, entry: Entry) -> bool:
-    """True for an act that the other takes part in: it touches, holds, lifts or strikes them, or needs an answer."""
+    """True for an act that the other takes part in: it touches, holds, lifts or strikes them, or needs an answer.
+
+    So does what is done to them without anybody's going anywhere, also where nothing is given of it.
+    """
     if len(act.agents) == 1 and act.patient is None and any(getattr(s, "hold", "") == COUPLE for s in entry.stage):
         return False  # they dance with nobody
     if entry.mutual or any(shape.who != "agent" or shape.do in _JOINS for shape in entry.stage):
@@ -177,7 +181,7 @@ def loose(done: Done, idle: Collection[str]) -> frozenset[str]:
 
 def gesturing(gestures: Mapping[str, shapes.Gesture], moves: Sequence[Move], done: Done) -> frozenset[str]:
     """The people who gesture on the spot and do nothing else."""
-    gone = {move.person for move in moves if move.way not in ("stay", "back to back")}
+    gone = leaving(moves)
     own = {who: sum(who in act.agents and not only_stays(e) for act, e in done) for who in "ab"}
     return frozenset(
         who

@@ -14,14 +14,15 @@ from acts import shapes
 from acts.lexicon import Lexicon
 from acts.plan import Act, other_of
 from motion import FPS, SMPL22
-from motion.vectors import Array
+from motion.skeleton import HEAD_TOP
+from motion.vectors import Array, floor_points
 
 from .floor import ABREAST, BEHIND, CLOSE, CREEPS, LINKED
 from .holds import TWIRL
 from .lifts import takes_hold
 from .places import Standing, Way2D, eased
 from .poses import JOINT, Pose, grounded, seated, upright
-from .score import Lift, Move, Score, at_start, goes
+from .score import Lift, Move, Score, at_start, goes, leaving
 from .strikes import BOUTS
 from .window import Part, Stretch
 
@@ -43,7 +44,7 @@ _SEATS = {"sits": seated, "sits on the ground": grounded}
 def beginning(scores: Sequence[Score], lengths: Sequence[float]) -> Standing:
     """The places before the first of some beats, of so many seconds, so that the first moves of the story can begin."""
     first, touch = scores[0], scores[0].touch
-    free = not (first.lift or first.twirls or first.strike) and going(first.moves)
+    free = not (first.lift or first.twirls or first.strike) and leaving(first.moves)
     if not free and (places := placed(first)) is not None:
         return places
     offers = [who for who, gesture in first.gestures.items() if gesture.gesture == "offers"]
@@ -58,11 +59,6 @@ def beginning(scores: Sequence[Score], lengths: Sequence[float]) -> Standing:
         if goes(score.moves):
             return starting(score.moves, seconds, near=near)
     return starting((), lengths[0], near=near)
-
-
-def going(moves: Sequence[Move]) -> set[str]:
-    """The people who leave their place."""
-    return {move.person for move in moves if move.way not in ("stay", "back to back", "averted")}
 
 
 def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> Standing:
@@ -165,9 +161,6 @@ SETTLE = 0.3
 """Seconds in which they come to rest."""
 _OFTEN = 8
 """Frames between two given places of a step."""
-_CROWN = 0.2
-"""Metres from the joint of the head to its top, along the neck."""
-_PARENTS, _CHILDREN = (list(side) for side in zip(*SMPL22.bones, strict=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +213,7 @@ def roomy(stand: Standing, poses: Mapping[int, Sequence[Pose]], fixed: Sequence[
     if first:  # a is where the scene begins
         shares = np.stack([np.zeros(2), line])
     for apart in np.arange(0.0, FARTHEST + _STEP, _STEP):
-        moved = [bodies[i] + np.insert(apart * shares[i], 1, 0.0) for i in (0, 1)]
+        moved = [bodies[i] + floor_points(apart * shares[i]) for i in (0, 1)]
         if distance(moved[0], moved[1]) >= BODY:
             break
     places = stand.places + apart * shares
@@ -253,8 +246,8 @@ def _points(poses: Array) -> Array:
     """Joints (N, 22, 3), the middles of their bones, and the tops of the heads."""
     neck, head = (poses[:, JOINT[name]] for name in ("neck", "head"))
     up = (head - neck) / np.linalg.norm(head - neck, axis=-1, keepdims=True).clip(min=1e-6)
-    crowns = head[:, None] + _CROWN * np.array([[0.5], [1.0]]) * up[:, None]
-    return np.concatenate([poses, 0.5 * (poses[:, _PARENTS] + poses[:, _CHILDREN]), crowns], axis=1)
+    crowns = head[:, None] + HEAD_TOP * np.array([[0.5], [1.0]]) * up[:, None]
+    return np.concatenate([poses, 0.5 * (poses[:, 1:] + poses[:, list(SMPL22.parents[1:])]), crowns], axis=1)
 
 
 # ---- takes: what words leave open, drawn by the seed --------------------------------------------------

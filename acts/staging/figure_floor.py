@@ -15,18 +15,16 @@ import scipy  # its parts are loaded with their first use
 
 from motion import FPS
 from motion.limbs import solve_two_bones
-from motion.skeleton import ARMS, LEGS
+from motion.skeleton import ARMS, HEAD_TOP, LEGS, TOES
 from motion.smoothing import minimum_jerk
 from motion.transforms import facing, heading_matrix
-from motion.vectors import Array
+from motion.vectors import FLAT, Array
 
-from .poses import BOTH_SIDES, JOINT, STANCE, TOES, Turns, about, poses_of
+from .poses import BOTH_SIDES, JOINT, STANCE, Turns, about, ahead_of, poses_of
 
 _CLEAR = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))["skin"]
 """Metres from a joint to the skin below it, on which a body lies or stands."""
 _CLEARANCES = np.array([_CLEAR[name.split("_")[-1]] for name in JOINT])
-_CROWN, _OVER_CROWN = 0.14, 0.02
-"""Metres from the joint of the head to its top, and of hair over it."""
 _SHARED = 0.008
 """Metres over the lowest joint within which others carry the body with it."""
 _EVEN = 1.5
@@ -62,9 +60,7 @@ def grounded_poses(angles: Mapping[str, Array], place: Array, angle: float) -> A
     ahead, left = (heading_matrix(angle)[:, axis] for axis in (2, 0))
     root += angles["ahead"][:, None] * ahead + angles["aside"][:, None] * left
     poses = poses + root[:, None]
-    shift = np.array([place[0], 0.0, place[1]]) + STANCE * ahead - poses[0, TOES].mean(axis=0)
-    poses = poses + shift * [1.0, 0.0, 1.0]
-    return _staying(poses)
+    return _staying(poses + ahead_of(place, angle, STANCE) - poses[0, TOES].mean(axis=0) * FLAT)
 
 
 def _evened(values: Array) -> Array:
@@ -75,7 +71,7 @@ def _evened(values: Array) -> Array:
 def _turns(angles: Mapping[str, Array], angle: float) -> Turns:
     """Rotations (N, 3, 3) of the joints against their parents."""
     trunk = about(2, -angles["lean"] / 3) @ about(0, angles["spine"] / 3) @ heading_matrix(angles["twist"] / 3)
-    head = about(0, angles["neck"] / 2) @ about(2, -angles["tilt"] / 2) @ heading_matrix(angles["look"] / 2)
+    head = about(0, angles["neck"] / 2) @ heading_matrix(angles["look"] / 2)
     pelvis = heading_matrix(angle) @ heading_matrix(angles["yaw"])
     turns: Turns = {"pelvis": pelvis @ about(2, -angles["roll"]) @ about(0, angles["pitch"])}
     turns |= dict.fromkeys(("spine1", "spine2", "spine3"), trunk) | dict.fromkeys(("neck", "head"), head)
@@ -86,7 +82,6 @@ def _turns(angles: Mapping[str, Array], angle: float) -> Turns:
         turns[f"{side}_hip"] = about(0, -own["hip"]) @ spread @ turned
         turns[f"{side}_knee"] = about(0, own["knee"])
         turns[f"{side}_ankle"] = about(0, own["ankle"])
-        turns[f"{side}_collar"] = about(2, sign * own["shrug"])
         turns[f"{side}_shoulder"] = about(0, -own["arm"]) @ hangs @ about(0, own["rotate"])
         turns[f"{side}_elbow"] = heading_matrix(-sign * own["elbow"])
     return turns
@@ -96,7 +91,7 @@ def _gaps(poses: Array) -> Array:
     """(N, 23) metres of the skin at each joint, and of the top of the head, over the height of the pelvis."""
     neck, head = (poses[:, JOINT[name]] for name in ("neck", "head"))
     up = (head - neck)[:, 1] / np.linalg.norm(head - neck, axis=1).clip(min=1e-6)
-    crown = head[:, 1] + _CROWN * up - _OVER_CROWN
+    crown = head[:, 1] + HEAD_TOP * up
     return np.concatenate([poses[..., 1] - _CLEARANCES, crown[:, None]], axis=1)
 
 
@@ -111,7 +106,7 @@ def _rolled(poses: Array, over: Array) -> Array:
     weights = np.exp(-over / _SHARED)
     shared = weights[:-1] * weights[1:]
     steps = np.einsum("np,npc->nc", shared, np.diff(points, axis=0)) / shared.sum(axis=1, keepdims=True)
-    return np.concatenate([np.zeros((1, 3)), -np.cumsum(steps, axis=0)]) * [1.0, 0.0, 1.0]
+    return np.concatenate([np.zeros((1, 3)), -np.cumsum(steps, axis=0)]) * FLAT
 
 
 def _staying(poses: Array) -> Array:
@@ -143,7 +138,7 @@ def _to_its_spot(tip: Array, clearance: float) -> Array:
             continue
         near = np.arange(max(at[0] - _BLEND, 0), min(at[-1] + _BLEND + 1, len(tip)))
         away = np.maximum(np.maximum(at[0] - near, near - at[-1]), 0) / (_BLEND + 1)
-        spot = np.median(tip[at], axis=0) * [1, 0, 1] + [0, clearance, 0]
+        spot = np.median(tip[at], axis=0) * FLAT + [0, clearance, 0]
         off = spot - tip[at[np.searchsorted(at, near).clip(max=len(at) - 1)]]
         shift[near] = minimum_jerk(1 - away)[:, None] * off
     shift[:, 1] = np.maximum(shift[:, 1], clearance - tip[:, 1])

@@ -31,19 +31,19 @@ from .recordings import BLENDS, LEGS, has_takes, performing, standing_by
 from .score import Change, Score
 from .window import OFTEN, SETTLES, Part, Stretch, late_by
 
-SINGLE = ("pitch", "roll", "yaw", "spine", "lean", "twist", "neck", "look", "tilt")
+SINGLE = ("pitch", "roll", "yaw", "spine", "lean", "twist", "neck", "look")
 """Degrees by which the pelvis is pitched forward, rolled to the left and turned to the left, by which the trunk is bent
-forward, leant to the left and twisted to the left, and by which the head is bent, turned and tilted likewise."""
+forward, leant to the left and twisted to the left, and by which the head is bent and turned likewise."""
 METRES = ("rise", "ahead", "aside")
 """Metres of the lowest joint over the floor, and of the body ahead and to the left of where it would be."""
-PAIRED = ("hip", "out", "turnout", "knee", "ankle", "arm", "side", "rotate", "elbow", "shrug", "free")
+PAIRED = ("hip", "out", "turnout", "knee", "ankle", "arm", "side", "rotate", "elbow", "free")
 """Degrees by which a thigh is raised, spread and turned out, a knee bent, toes pointed, an arm raised forward, spread
-and turned in, an elbow bent, a shoulder raised; "free" is 1 for a leg that does not carry the body, as it swings past
+and turned in, an elbow bent; "free" is 1 for a leg that does not carry the body, as it swings past
 the floor. A number for both sides, or [left, right]."""
 NAMES = (*SINGLE, *METRES, *(f"{side}_{name}" for side in ("left", "right") for name in PAIRED))
-_ASIDE = tuple(NAMES.index(name) for name in ("roll", "yaw", "lean", "twist", "look", "tilt", "aside"))
+_ASIDE = tuple(NAMES.index(name) for name in ("roll", "yaw", "lean", "twist", "look", "aside"))
 """Those that change their sign in a mirror."""
-_STANDS = {"hip": 3.4, "out": -1.1, "knee": 6.9, "ankle": -3.4, "side": 9.8, "elbow": 17.2}
+_STANCE = {"hip": 3.4, "out": -1.1, "knee": 6.9, "ankle": -3.4, "side": 9.8, "elbow": 17.2}
 BEGINS, RESTS = 0.3, 0.15
 """Seconds of a beat before a figure begins, and after it."""
 FASTEST, SLOWEST = 0.75, 1.25
@@ -126,18 +126,17 @@ def _scheduled(figure: Figure, length: float) -> tuple[Array, Array]:
     if pace < FASTEST:
         steps, rows = _cut(steps, rows, room)
         pace = 1.0
-    stands = _row({}, {"stand": {}})
     at = late + BEGINS + np.cumsum(np.concatenate([[0.0], steps * min(pace, SLOWEST)]))
-    return np.concatenate([[0.0], at + 1e-3]), np.concatenate([stands, stands, rows])
+    return np.concatenate([[0.0], at + 1e-3]), np.concatenate([_STANDS, _STANDS, rows])
 
 
 def _cut(steps: Array, rows: Array, room: float) -> tuple[Array, Array]:
     """The beginning of a figure for which there is no time, and the same way back."""
     fits = int(np.searchsorted(np.cumsum(2 * FASTEST * steps), room, side="right"))
     if not fits:
-        return np.array([room]), _row({}, {"stand": {}})
+        return np.array([room]), _STANDS
     steps, rows = FASTEST * steps[:fits], rows[:fits]
-    back = np.concatenate([rows[-2::-1], _row({}, {"stand": {}})])
+    back = np.concatenate([rows[-2::-1], _STANDS])
     return np.concatenate([steps, steps[::-1]]), np.concatenate([rows, back])
 
 
@@ -150,7 +149,7 @@ def _keys(rows: Sequence[Mapping[str, Any]], poses: Mapping[str, Any]) -> tuple[
 
 def _row(row: Mapping[str, Any], poses: Mapping[str, Any]) -> Array:
     """The angles (1, angles) in radians of a row: those of its pose, with what it says beside."""
-    said = _STANDS | poses[row.get("pose", "stand")] | {k: v for k, v in row.items() if k not in ("in", "pose")}
+    said = _STANCE | poses[row.get("pose", "stand")] | {k: v for k, v in row.items() if k not in ("in", "pose")}
     angles = np.zeros(len(NAMES))
     for name, value in said.items():
         if name in METRES:
@@ -161,6 +160,9 @@ def _row(row: Mapping[str, Any], poses: Mapping[str, Any]) -> Array:
             for side, own in zip(("left", "right"), np.broadcast_to(value, 2), strict=True):
                 angles[NAMES.index(f"{side}_{name}")] = own if name == "free" else np.deg2rad(own)
     return angles[None]
+
+
+_STANDS = _row({}, {"stand": {}})
 
 
 def _mirrored(rows: Array) -> Array:

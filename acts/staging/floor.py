@@ -12,10 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from motion import FPS
-from motion.vectors import Array, wrapped
+from motion.vectors import Array, bearing, direction, travelled, wrapped
 
 from .holds import HOLDS, danced
-from .places import EASE, MOST, TURNING, Standing, Track, Way2D, bearing, direction, eased, sampled, smoothed
+from .places import EASE, MOST, TURNING, Standing, Track, Way2D, between, eased, sampled, smoothed
 from .score import Move, Way
 
 CLOSE = 0.9
@@ -205,7 +205,7 @@ def _behind(move: Move, track: Track, other: Array, faces: float, seconds: float
         line[1:1] = [other + wide * direction(start + share * sweep) for share in (0.4, 0.75)]
     if move.sits:
         track.seats = [*track.seats, goal - SEAT * direction(faces)]
-    way = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+    way = float(travelled(np.stack(line))[-1])
     if way > (0.05 if move.near else 0.25):
         most = seconds if len(line) == 2 else _ROUND_BEHIND * seconds
         if move.sits:  # they turn round there
@@ -277,7 +277,7 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     wanted = min(wanted, way / max((radius + end_radius) / 2 if end_radius > radius else end_radius, 0.4))
     angles = start + move.sense * np.linspace(0, wanted, 60)
     radii = radius + (end_radius - radius) * np.clip(np.linspace(0, 5, 60), 0, 1)
-    line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    line = middle + radii[:, None] * direction(angles)
     track.walk(line, seconds)
 
 
@@ -290,7 +290,7 @@ def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> No
     nearer = np.clip(time * seconds / 1.2, 0, 1)
     turned = 2 * math.pi * move.turns * seconds * eased(time, min(0.5, 1.5 / seconds))
     angles, radii = start + turned, radius + (move.near / 2 - radius) * nearer
-    line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    line = middle + radii[:, None] * direction(angles)
     if move.way == "hold" and move.near == HOLDS["closed"].apart:
         line = line + danced(time * seconds, angles, np.sign(out @ (standing.places[0] - middle)) or 1.0)
     begins, room = track.frame, len(track.places) - track.frame
@@ -321,7 +321,7 @@ def _after(move: Move, track: Track, ahead: Track, start: Array, seconds: float)
     first = track.frame
     theirs = np.stack([ahead.at(frame, start) for frame in range(first, first + frames)])
     line = np.concatenate([track.place[None], theirs])
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    along = travelled(line)
     most = max(move.speed, MOST) / FPS
     done, gone = np.zeros(frames), 0.0
     for i in range(frames):
@@ -330,8 +330,7 @@ def _after(move: Move, track: Track, ahead: Track, start: Array, seconds: float)
             gone += float(np.clip(free, 0.0, most * min(1.0, (i / FPS - _REACTS) / EASE)))
         done[i] = gone
     if done[-1] > 0.25:
-        at = np.stack([np.interp(done, along, line[:, axis]) for axis in (0, 1)], axis=1)
-        track.follow(at)
+        track.follow(between(line, along, done))
 
 
 def _time(way: float, speed: float, most: float) -> float:

@@ -19,13 +19,14 @@ import numpy as np
 from acts.shapes import Gesture
 from motion import FPS, SMPL22
 from motion.limbs import solve_two_bones
+from motion.skeleton import SIDES
 from motion.transforms import heading_matrix
-from motion.vectors import Array, unit
+from motion.vectors import Array, floor_points, leftwards, unit
 
 from .places import EVENLY, Way2D
 from .poses import JOINT, upright
 from .recordings import Performance, performance
-from .score import SIDES, Move, Score
+from .score import Move, Score
 from .window import Frames, KnownFrames, Stretch, late_by
 
 Place = tuple[float, float, float]
@@ -99,6 +100,11 @@ def hands_of(gesture: Gesture) -> tuple[str, ...]:
     return SIDES if gesture.sides == "both" else (gesture.sides,)
 
 
+def arms_of(gesture: Gesture) -> list[int]:
+    """The joints of the arms that make a gesture: of each side the elbow and the wrist."""
+    return [JOINT[f"{side}_{joint}"] for side in hands_of(gesture) for joint in ("elbow", "wrist")]
+
+
 def wrist(name: str, side: str, seconds: Array, towards: Array) -> Array:
     """A wrist's way beside the pelvis of a person who faces +Z.
 
@@ -111,12 +117,12 @@ def wrist(name: str, side: str, seconds: Array, towards: Array) -> Array:
     Returns:
         (N, 3) metres from the pelvis.
     """
-    stands, stroke = upright(np.zeros(2), 0.0), GESTURES[name]
+    stroke = GESTURES[name]
     way = stroke.way(1.0 if side == "left" else -1.0, seconds) + _TOWARDS.get(name, 0.0) * towards
     if name == "swings":
         angle = _SWUNG * np.sin(2 * np.pi * stroke.rate * np.asarray(seconds))
         way += _PENDULUM * np.stack([0.0 * angle, -np.cos(angle), np.sin(angle)], axis=1)
-    return way + (stands[JOINT[f"{side}_shoulder"]] - stands[0] if stroke.from_shoulder else 0.0)
+    return way + (_shoulder(side) if stroke.from_shoulder else 0.0)
 
 
 # ---- arms: both bones of those who gesture, as parts on the time line of a beat -----------------------
@@ -183,12 +189,12 @@ def _bent(side: str, goal: Array, pole: Place) -> Array:
 
 
 def hand_parts(
-    score: Score, moves: Sequence[Move], posed: Mapping[int, Array], stretch: Stretch, seed: int = 0
+    score: Score, moves: Sequence[Move], posed: Mapping[int, Array], stretch: Stretch, seed: int
 ) -> Iterator[KnownFrames]:
     """The gestures of those whose way or posture is given, while the hands are up: the network brings them there.
 
     Args:
-        told: by the beat.
+        score: of the beat.
         moves: of the beat, where they were changed since.
         posed: a pose (22, 3) of those whose posture is given, by person.
         stretch: the beat.
@@ -246,17 +252,15 @@ def _arms(gesture: Gesture, person: int, at: Frames, stretch: Stretch, seed: int
     seconds = (at - start) / FPS - late
     own, other = stretch.course(person), stretch.course(1 - person)
     turns = heading_matrix(own.headings[at])
-    line = np.insert(other.places[at] - own.places[at], 1, 0.0, axis=1)
+    line = floor_points(other.places[at] - own.places[at])
     line /= np.linalg.norm(line, axis=1, keepdims=True).clip(min=1e-6)
     towards = np.einsum("nji,nj->ni", turns, line)
-    joints, places = list[int](), list[Array]()
-    for side in hands_of(gesture):
-        if GESTURES[gesture.gesture].at_other:
-            joints.append(JOINT[f"{side}_wrist"])
-            places.append(wrist(gesture.gesture, side, at / FPS, towards)[:, None])
-        else:
-            joints += [JOINT[f"{side}_elbow"], JOINT[f"{side}_wrist"]]
-            places.append(arm(gesture, side, seconds, length, towards))
+    if GESTURES[gesture.gesture].at_other:
+        joints = [JOINT[f"{side}_wrist"] for side in hands_of(gesture)]
+        places = [wrist(gesture.gesture, side, at / FPS, towards)[:, None] for side in hands_of(gesture)]
+    else:
+        joints = arms_of(gesture)
+        places = [arm(gesture, side, seconds, length, towards) for side in hands_of(gesture)]
     if GESTURES[gesture.gesture].on == "head" and person in stretch.ways:
         stands, head = upright(np.zeros(2), 0.0), JOINT["head"]
         joints.append(head)
@@ -269,7 +273,7 @@ def _recorded_arms(
 ) -> tuple[list[int], Array]:
     """The joints of the arms of a recorded gesture; see :func:`_arms`."""
     poses = recorded.poses(at / FPS)
-    joints = [JOINT[f"{side}_{joint}"] for side in hands_of(gesture) for joint in ("elbow", "wrist")]
+    joints = arms_of(gesture)
     turns = heading_matrix(stretch.course(person).headings[at])
     return joints, np.einsum("nij,nsj->nsi", turns, poses[:, joints] - poses[:, :1])
 
@@ -293,5 +297,5 @@ def _inner(ways: Mapping[int, Way2D]) -> dict[str, str]:
         return {}
     line = ways[1].places[-1] - ways[0].places[-1]
     angle = float(np.nan_to_num(np.asarray(ways[0].headings)[-1]))
-    left = line @ np.array([np.cos(angle), -np.sin(angle)]) > 0
+    left = line @ leftwards(angle) > 0
     return {"a": "left", "b": "right"} if left else {"a": "right", "b": "left"}

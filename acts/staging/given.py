@@ -13,22 +13,23 @@ from functools import cached_property
 import numpy as np
 
 from motion import FPS
+from motion.skeleton import FEET, SIDES
 from motion.transforms import Placement, heading
-from motion.vectors import Array
+from motion.vectors import Array, direction
 
-from .beginnings import Room, Take, beginning, going, roomy
+from .beginnings import Room, Take, beginning, roomy
 from .figures import figure_parts, figure_poses
 from .floor import plan
-from .gestures import hand_parts, hands_of
+from .gestures import arms_of, hand_parts
 from .holds import COUPLE, hold_parts, pull_parts, twirl_parts
 from .lifts import Carrying
 from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
-from .places import AT_TABLE, EVENLY, Standing, Way2D, direction
+from .places import AT_TABLE, EVENLY, Standing, Way2D
 from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, upright
 from .postures import posture_parts, postures
 from .recordings import Performance, dancing, performance, standing_by, walking
-from .score import Move, Score, Touch, at_start, goes
+from .score import Move, Score, Touch, at_start, goes, leaving
 from .strikes import strike_parts
 from .touches import touch_parts
 from .window import GETS_DOWN, SETTLES, KnownFrames, KnownPath, Part, Stretch, Window
@@ -37,7 +38,6 @@ _DRAFTED = 6
 """Frames between two poses of a bystander."""
 _RESTS, _STAYS, _FACES = 15, 0.03, 0.2
 """Frames before and after one at which somebody on their way rests, and the metres and radians that they may move."""
-_FEET = tuple(JOINT[f"{side}_{joint}"] for side in ("left", "right") for joint in ("ankle", "foot"))
 _LOW = ("crawls", "on the knees")
 """Gaits of people who are low."""
 _PLACED = 30
@@ -67,9 +67,7 @@ class Story:
         return Take.of(self.seed).of_places(beginning(self.scores, self.seconds), self.scores[0])
 
 
-def plan_parts(
-    story: Story, window: Window, scene: Array, placement: Placement, taken: Collection[int] = ()
-) -> list[Part]:
+def plan_parts(story: Story, window: Window, scene: Array, placement: Placement, taken: Collection[int]) -> list[Part]:
     """The places, poses and hands that the words of a window's beat ask for, in the network's frame.
 
     Args:
@@ -121,7 +119,7 @@ def places_of(parts: Sequence[Part]) -> list[Part]:
 def _headings(joints: Collection[int], poses: Array) -> Array | None:
     """(N,) radians in which poses (N, 22, 3) face by their hips, or else by their shoulders, if these are given."""
     for pair in ("hip", "shoulder"):
-        left, right = (JOINT[f"{side}_{pair}"] for side in ("left", "right"))
+        left, right = (JOINT[f"{side}_{pair}"] for side in SIDES)
         if not joints or {left, right} <= set(joints):
             across = poses[:, left] - poses[:, right]
             return np.asarray(np.arctan2(-across[:, 2], across[:, 0]))
@@ -216,7 +214,7 @@ class _Beat:
         A figure comes before limbs, these before standing by, and that before a posture. Who stands by has no pose.
         """
         score, seed = self.score, self.story.seed
-        gone = _gone(moves)
+        gone = leaving(moves)
         parts: list[Part] = []
         posed: dict[int, Array] = {}
         for person, who in enumerate("ab"):
@@ -237,8 +235,8 @@ class _Beat:
                 parts += _bystander_parts(person, stretch, seed)
             elif stays and up and (turned or who in score.gesturing):
                 gesture = score.gestures.get(who)
-                hands = [JOINT[f"{s}_{j}"] for s in hands_of(gesture) for j in ("elbow", "wrist")] if gesture else HANDS
-                parts += _bystander_parts(person, stretch, seed, all_but(hands), self.performance(person))
+                arms = arms_of(gesture) if gesture else HANDS
+                parts += _bystander_parts(person, stretch, seed, all_but(arms), self.performance(person))
                 posed[person] = stands
             elif stays:
                 poses = self._postures(person, stretch)
@@ -278,7 +276,7 @@ class _Beat:
             parts += twirl_parts(stretch)
         if (strike := score.strike) is not None and "ab".index(strike.turns[0]) in ways:
             parts += strike_parts(strike, score, stretch)
-        whole = {who for person, who in enumerate("ab") if who not in _gone(moves) and self.performance(person)}
+        whole = {who for person, who in enumerate("ab") if who not in leaving(moves) and self.performance(person)}
         gestures = {who: gesture for who, gesture in score.gestures.items() if who not in whole}
         for arms in hand_parts(replace(score, gestures=gestures), moves, posed, stretch, self.story.seed):
             if score.lift is None or "ab"[arms.person] == score.lift.carrier:
@@ -302,7 +300,7 @@ class _Beat:
         """The room that the postures of a beat need, in which nobody goes anywhere or touches the other."""
         score, stretch = self.score, self.stretch(stand)
         meets = any(figure.meets for figure in score.figures.values())
-        if score.joined or score.strike or score.touch or meets or going(moves):
+        if score.joined or score.strike or score.touch or meets or leaving(moves):
             return Room(stand)
         poses = {
             person: figure_poses(score, person, stretch, self.story.seed)
@@ -327,11 +325,6 @@ def _keeps_back(score: Score, who: str) -> bool:
     if who in score.changes or (touch is not None and touch.beside and touch.person == who):
         return False  # they are down, lean to the other, or reach around them
     return bool(score.side) or (touch is not None and touch.behind and touch.person != who)
-
-
-def _gone(moves: Sequence[Move]) -> set[str]:
-    """The people who leave their place."""
-    return {move.person for move in moves if move.way not in ("stay", "back to back")}
 
 
 def _bystander_parts(
@@ -370,7 +363,7 @@ def _going_parts(person: int, stretch: Stretch, seed: int, joints: Sequence[int]
         moved, turned = np.linalg.norm(last - first, axis=-1), np.ptp(course.headings[around], axis=0)
         rests = at[(moved < _STAYS) & (turned < _FACES)]
     if len(goes) > 1:
-        feet = stretch.known(person, goes, poses[goes], _FEET)
+        feet = stretch.known(person, goes, poses[goes], FEET)
         parts += [feet, stretch.draft(person, goes, poses[goes], joints)]
     if len(rests) > 1:
         waiting = standing_by(course.places[rests], course.headings[rests], rests + stretch.start, own)

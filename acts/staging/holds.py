@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from motion.vectors import Array
+from motion.skeleton import SIDES
+from motion.vectors import Array, direction, floor_points
 
 from .places import EVENLY
-from .poses import JOINT, TRUNK, UPRIGHT, Pose, bending
+from .poses import JOINT, TRUNK, UPRIGHT, WRISTS, Pose, bending
 from .window import OFTEN, REACHES, Frames, KnownFrames, Stretch
 
 
@@ -52,7 +53,6 @@ _TOGETHER, _GROWS = 0.8, 0.6
 _NEARLY = 0.2
 """Metres more than in a hold at which two who begin in it stand."""
 _HIPS = [JOINT["left_hip"], JOINT["right_hip"]]
-_WRISTS = [JOINT["left_wrist"], JOINT["right_wrist"]]
 _HELD = 45
 """Frames before somebody is up in which their hand is held."""
 _ARM = 0.48
@@ -63,8 +63,8 @@ _LEANS = np.linspace(0.1, 1.2, 12)
 """Radians by which somebody leans forward who pulls the other up: as little as gets the hands together."""
 _GAP = 0.03
 """Metres from where two hands meet to each wrist."""
-_SHOULDERS = {side: JOINT[f"{side}_shoulder"] for side in ("left", "right")}
-_WRIST = {side: JOINT[f"{side}_wrist"] for side in ("left", "right")}
+_SHOULDERS = {side: JOINT[f"{side}_shoulder"] for side in SIDES}
+_WRIST = dict(zip(SIDES, WRISTS, strict=True))
 
 
 def raised(places: Array) -> Array:
@@ -82,7 +82,7 @@ def joined(hold: str, places: Array) -> Array:
     Returns:
         (2, 2, N, 3) metres: of each person the left wrist and the right one.
     """
-    a, b = (np.insert(place, 1, 0.0, axis=-1) for place in places)
+    a, b = (floor_points(place) for place in places)
     ahead = (b - a) / np.linalg.norm(b - a, axis=-1, keepdims=True).clip(min=1e-6)
     left = np.cross([0.0, 1.0, 0.0], ahead)  # of a
     middle, up = (a + b) / 2, np.array([0.0, 1.0, 0.0])
@@ -108,7 +108,7 @@ def danced(seconds: Array, angles: Array, sign: float) -> Array:
         angles: (N,) radians of one of them about the middle.
         sign: 1 for a and -1 for b, who go the same way.
     """
-    ahead = sign * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    ahead = sign * direction(angles)
     since = np.clip(seconds - _TOGETHER, 0, None)[:, None]
     return np.clip(since / _GROWS, 0, 1) * _BASIC * np.sin(2 * np.pi * since / _BAR) * ahead
 
@@ -120,7 +120,7 @@ def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:
     begun = stretch.start == 0 and apart < HOLDS[hold].apart + _NEARLY  # a story that begins in the hold
     at = stretch.shown(np.arange(0 if begun else REACHES, stretch.frames, OFTEN))
     wrists = joined(hold, np.stack([course.places[at] for course in courses]))
-    return _with_hands(stretch, at, HOLDS[hold].lean, wrists, _WRISTS, [*TRUNK, *_WRISTS])
+    return _with_hands(stretch, at, HOLDS[hold].lean, wrists, WRISTS, [*TRUNK, *WRISTS])
 
 
 def twirl_parts(stretch: Stretch) -> list[KnownFrames]:

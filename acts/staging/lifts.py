@@ -17,11 +17,11 @@ from acts.shapes import Gesture
 from motion import FPS
 from motion.steering import STRIDE, Steps
 from motion.transforms import heading_matrix
-from motion.vectors import Array
+from motion.vectors import FLAT, Array, direction, floor_points
 
 from .gestures import hands_of, wrist
-from .places import Course, Way2D, direction, eased
-from .poses import JOINT, LOWER, TRUNK, all_but, upright
+from .places import Course, Way2D, eased
+from .poses import ELBOWS, JOINT, LOWER, TRUNK, WRISTS, all_but, upright
 from .recordings import carried
 from .score import Lift
 from .window import OFTEN, KnownFrames, Stretch
@@ -43,10 +43,7 @@ _STAYS = 0.3
 """Metres within which a person keeps their place before they are picked up."""
 _STANDS = 0.003
 """Metres or radians a frame below which a body stands."""
-_ELBOWS = [JOINT["left_elbow"], JOINT["right_elbow"]]
-_WRISTS = [JOINT["left_wrist"], JOINT["right_wrist"]]
-_CARRIER = [*LOWER, *(joint for joint in TRUNK if joint not in LOWER), *_WRISTS]
-_BODY = all_but(_ELBOWS)
+_CARRIER = [*LOWER, *(joint for joint in TRUNK if joint not in LOWER), *WRISTS]
 
 
 def takes_hold(carry: str) -> float:
@@ -140,8 +137,8 @@ class Carrying:
             theirs += 0.0 if self.lift.carry == "drags" else sinks
             own[:, LOWER] = walking[:, LOWER]
             self._gesture(theirs, at, course)
-            elbows = _ELBOWS if self.lift.carry == "arms" else []
-            parts.append(self.stretch.known(1 - self.carrier, at, theirs, [*_BODY, *elbows]))
+            elbows = ELBOWS if self.lift.carry == "arms" else ()
+            parts.append(self.stretch.known(1 - self.carrier, at, theirs, [*all_but(ELBOWS), *elbows]))
             parts.append(self.stretch.known(self.carrier, at, own, [*_CARRIER, *elbows]))
         feet = [(frame, pose) for frame, pose in self._on_feet() if self.stretch.shows(frame)]
         if feet:
@@ -163,12 +160,12 @@ class Carrying:
         """(N, 22, 3) the carrier's poses while the other is off the floor, one foot after the other."""
         course, stride = self.course, STRIDE if self.lift.spins else LADEN
         steps = Steps(stride)
-        speed = np.insert(np.gradient(course.places, axis=0), 1, 0.0, axis=1)
+        speed = floor_points(np.gradient(course.places, axis=0))
         turned = np.gradient(course.headings)
         poses = []
         for t in range(*self.off):
             pose = upright(course.places[t], float(course.headings[t]))
-            pose -= (pose[0] - [*course.places[t][:1], 0.0, *course.places[t][1:]]) * [1.0, 0.0, 1.0]
+            pose -= pose[0] * FLAT - floor_points(course.places[t])
             moving = bool(np.linalg.norm(speed[t]) > _STANDS or abs(turned[t]) > _STANDS)
             poses.append(steps(pose, moving=moving, ahead=stride / 2 * speed[t]))
         return np.stack(poses)

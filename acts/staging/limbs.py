@@ -16,14 +16,29 @@ import numpy as np
 from acts.shapes import Limb
 from motion import FPS
 from motion.kinematics import swing
-from motion.skeleton import ARMS
+from motion.skeleton import ARMS, SIDES, TOES
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
-from motion.vectors import Array
+from motion.vectors import FLAT, Array
 
-from .poses import ALL, BOTH_SIDES, HANDS, JOINT, SOLE, STANDS, TOES, TRUNK, Turns, about, all_but, poses_of, turns_of
+from .poses import (
+    ALL,
+    BOTH_SIDES,
+    HANDS,
+    JOINT,
+    SOLE,
+    STANCE,
+    STANDS,
+    TRUNK,
+    Turns,
+    about,
+    ahead_of,
+    all_but,
+    poses_of,
+    turns_of,
+)
 from .recordings import standing_by
-from .score import SIDES, Score
+from .score import Score
 from .window import OFTEN, SETTLES, Part, Stretch
 
 RAMP = 0.7
@@ -56,9 +71,7 @@ def limbed(limbs: Sequence[Limb], place: Array, angle: float, seconds: Array, le
     stance = [TOES[i] for i in _stance(limbs)]
     shift = still[stance].mean(axis=0) - poses[:, stance].mean(axis=1)
     shift[:, 1] = SOLE - poses[:, stance, 1].min(axis=1)
-    ahead = 0.12 * np.array([np.sin(angle), 0.0, np.cos(angle)])
-    toes = still[list(TOES)].mean(axis=0) * [1, 0, 1]
-    return poses + shift[:, None] + np.array([place[0], 0.0, place[1]]) + ahead - toes
+    return poses + shift[:, None] + ahead_of(place, angle, STANCE) - still[TOES].mean(axis=0) * FLAT
 
 
 def _standing_once(limbs: Sequence[Limb]) -> Sequence[Limb]:

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from acts.plan import other_of
-from motion.vectors import Array
+from motion.vectors import Array, direction
 
 from .floor import ABEAM
 from .holds import HOLDS, TWIRL
 from .lifts import takes_hold
-from .places import Standing, direction
+from .places import Standing
 from .poses import upright
 from .score import Lift, Move, Score, Strike, Touch, Way
 from .strikes import BOUTS
@@ -190,7 +190,7 @@ def coming(score: Score, stand: Standing, down: Collection[int]) -> tuple[Move, 
     return (*(Move(who, "to", until=True, near=score.reaching[who]) for who in comes), *waits)
 
 
-def towards_touched(touch: Touch | None, posed: Mapping[int, Array], stand: Standing, pulls: str = "") -> Standing:
+def towards_touched(touch: Touch | None, posed: Mapping[int, Array], stand: Standing, pulls: str) -> Standing:
     """The places that a way to the other is planned from: of a person who is posed, the one that is touched.
 
     A person who lies is taken to face away from the one who comes, so that they are touched from the side. A person

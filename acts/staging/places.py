@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import FPS
-from motion.vectors import Array, wrapped
+from motion.vectors import Array, bearing, direction, travelled, wrapped
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Course:
     def of(cls, way: Way2D, angle: float, frames: int) -> Course:
         """Of somebody on a way; where it leaves them free to look, they look as before."""
         time = np.arange(frames)
-        places = np.stack([np.interp(time, way.frames, way.places[:, axis]) for axis in (0, 1)], axis=1)
+        places = between(way.places, way.frames, time)
         known = np.array([]) if way.headings is None else np.flatnonzero(np.isfinite(way.headings))
         if way.headings is None or not len(known):
             return cls(places, np.full(frames, angle))
@@ -101,6 +101,11 @@ def eased(time: Array, share: float) -> Array:
     return done / done[-1]
 
 
+def between(line: Array, known: Array | Sequence[int], at: Array | NDArray[np.integer]) -> Array:
+    """The points (M, 2) of a line (N, 2), whose points are at ``known`` (N,) frames or metres, at others (M,)."""
+    return np.stack([np.interp(at, known, line[:, axis]) for axis in (0, 1)], axis=1)
+
+
 def smoothed(line: Array) -> Array:
     """Points on a curve that rounds the corners of a line (Chaikin's, four times)."""
     for _ in range(4):
@@ -112,9 +117,8 @@ def smoothed(line: Array) -> Array:
 
 def clear_of(line: Array, spot: Array) -> Array:
     """A line (N, 2) that goes round a thing at a spot (2,) where it would lead through it."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    at = np.linspace(0.0, along[-1], max(int(along[-1] / 0.05), 2))
-    dense = np.stack([np.interp(at, along, line[:, axis]) for axis in (0, 1)], axis=1)
+    along = travelled(line)
+    dense = between(line, along, np.linspace(0.0, along[-1], max(int(along[-1] / 0.05), 2)))
     out = dense - spot
     far = np.linalg.norm(out, axis=1)
     near = np.flatnonzero(far < ROUND)
@@ -133,16 +137,6 @@ def filled(values: Array, known: Array, first: float) -> Array:
     """The values with the last known one where they are not known."""
     at = np.maximum.accumulate(np.where(known, np.arange(len(values)), -1))
     return np.where(at >= 0, values[at.clip(0)], first)
-
-
-def bearing(line: Array) -> float:
-    """The heading in radians of a line (2,) over the floor, from +Z towards +X: what :func:`direction` takes."""
-    return math.atan2(line[0], line[1])
-
-
-def direction(heading: float | Array) -> Array:
-    """The unit vectors (…, 2), x and z, of headings (…) in radians from +Z towards +X."""
-    return np.stack([np.sin(heading), np.cos(heading)], axis=-1)
 
 
 # ---- tracks: the way of one person over the floor of a beat, laid out move by move --------------------
@@ -195,14 +189,12 @@ class Track:
         for seat in self.seats:
             line = clear_of(line, seat)
         frames = max(1, min(round(seconds * FPS), len(self.places) - self.frame))
-        steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
-        along = np.concatenate([[0.0], np.cumsum(steps)])
+        along = travelled(line)
         time = np.arange(1, frames + 1) / frames
         done = eased(time, EASE / max(seconds, 1e-6))
         share = min(EASE / max(seconds, 1e-6), 0.5)
         far = min(along[-1], MOST * frames / FPS * min(1.5 * (1 - share), 1.0))
-        at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
-        self.follow(at, heading, still=1e-4)
+        self.follow(between(line, along, done * far), heading, still=1e-4)
 
     def follow(self, places: Array, heading: Array | float | None = None, *, still: float = 2e-3) -> None:
         """Goes through places (N, 2), one a frame, and faces headings or where it goes, by more than ``still``."""

@@ -10,8 +10,9 @@ import numpy as np
 from motion import SMPL22
 from motion.kinematics import forward_kinematics
 from motion.limbs import bent_towards
+from motion.skeleton import TOES
 from motion.transforms import heading, heading_matrix
-from motion.vectors import Array
+from motion.vectors import FLAT, Array, direction, floor_points, rotations_by
 
 Turns = dict[str, Array]
 """Rotations (3, 3) or (N, 3, 3) of joints by name."""
@@ -33,12 +34,9 @@ LOWER = tuple(i for name, i in JOINT.items() if name.endswith(("pelvis", "hip", 
 """Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
 HANDS = tuple(i for name, i in JOINT.items() if name.endswith(("elbow", "wrist")))
 """Joints that move where the shoulders are held."""
-ARMS = tuple(i for name, i in JOINT.items() if name.endswith(("shoulder", "elbow", "wrist")))
-FLAT = tuple(joint for joint in ALL if joint not in HANDS)
-"""Pelvis and legs with the trunk, the head and the shoulders, for those who lie or bend down."""
-TRUNK = (JOINT["spine1"], *(joint for joint in FLAT if joint not in LOWER))
+ELBOWS, WRISTS = HANDS[:2], HANDS[2:]
+TRUNK = (JOINT["spine1"], *(joint for joint in ALL if joint not in (*LOWER, *HANDS)))
 """Joints of the trunk, the head and the shoulders."""
-TOES = (JOINT["left_foot"], JOINT["right_foot"])
 BOTH_SIDES = (("left", 1.0), ("right", -1.0))
 """Sides of the body, with the sign of their x for a person who faces +Z."""
 
@@ -57,15 +55,13 @@ _BELLY, _ELBOW_LIES = (-0.03, 0.14, -0.19), (-1.0, -0.6, 0.2)
 _SITS_UP: Mapping[str, float] = {"hip": -2.4, "knee": 1.9, "ankle": 0.1, "shoulder": 1.2, "elbow": 0.3, "spine": 0.15}
 _STOOPED = 1.6
 """Radians by which the trunk of a person leans who bends down to the floor."""
-_BENT = 0.9
-"""Radians of a bend from the hips."""
 STANDS: Mapping[str, float] = {"hip": -0.06, "knee": 0.12, "ankle": -0.06, "shoulder": 1.4, "elbow": 0.3, "spine": 0.0}
 
 
 def placed(poses: Array, places: Array, headings: Array | float) -> Array:
     """Poses (…, 22, 3) around the origin that face +Z, at places (…, 2) with headings (…)."""
     turned = poses @ np.swapaxes(heading_matrix(headings), -1, -2)
-    return np.asarray(turned + np.insert(np.asarray(places, dtype=float), 1, 0.0, axis=-1)[..., None, :])
+    return np.asarray(turned + floor_points(np.asarray(places, dtype=float))[..., None, :])
 
 
 @cache
@@ -87,11 +83,10 @@ def grounded(place: Array, angle: float) -> Array:
     """A person sitting on the ground, the feet where they stood: (22, 3) metres."""
     pose = _pose_of(angle, {"hip": -1.8, "knee": 0.35, "ankle": 0.0, "shoulder": 1.3, "elbow": 0.3, "spine": 0.1})
     pose[:, 1] += 0.08 - pose[:, 1].min()
-    ahead = STANCE * np.array([np.sin(angle), 0.0, np.cos(angle)])
-    return pose + (np.array([place[0], 0.0, place[1]]) + ahead - pose[list(TOES)].mean(axis=0)) * [1, 0, 1]
+    return pose + ahead_of(place, angle, STANCE) - pose[TOES].mean(axis=0) * FLAT
 
 
-def bending(places: Array, headings: Array | float, lean: float = _BENT) -> Array:
+def bending(places: Array, headings: Array | float, lean: float) -> Array:
     """People (…, 22, 3) in metres who stand as :func:`upright` says, bent from the hips by so many radians."""
     return leaning(upright(places, headings), headings, lean)
 
@@ -134,22 +129,22 @@ def kneeling(place: Array, angle: float) -> Array:
         {"hip": 0.1, "knee": 1.4, "ankle": 0.9, "shoulder": 1.3, "elbow": 0.4, "spine": 0.03},
     )
     pose[:, 1] += SOLE + 0.04 - pose[:, 1].min()
-    return pose + np.array([place[0], 0.0, place[1]])
+    return pose + floor_points(place)
 
 
 def lying(place: Array, angle: float) -> Array:
     """A person lying on the back, the feet about where they stood: (22, 3) metres."""
     pose = _pose_of(0.0, _LIES)
-    pose = (pose - pose[0]) @ (about(1, angle) @ about(0, -np.pi / 2)).T
+    pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -np.pi / 2)).T
     pose[:, 1] += 0.08 - pose[:, 1].min()
-    return pose + np.array([place[0], 0.0, place[1]]) - LYING * np.array([np.sin(angle), 0.0, np.cos(angle)])
+    return pose + ahead_of(place, angle, -LYING)
 
 
 def at_rest(poses: Array) -> Array:
     """Poses (N, 22, 3) of a person lying on the back, with the right hand on the belly."""
     rested = np.array(poses)
     arm = [JOINT[f"right_{joint}"] for joint in ("shoulder", "elbow", "wrist")]
-    turns = np.swapaxes(about(1, heading(rested)), -1, -2)
+    turns = np.swapaxes(heading_matrix(heading(rested)), -1, -2)
     goal, pole = (np.asarray(way) @ turns for way in (_BELLY, _ELBOW_LIES))
     shoulder, elbow, wrist = (rested[:, joint] for joint in arm)
     rested[:, arm[1]], rested[:, arm[2]] = bent_towards(shoulder, elbow, wrist, rested[:, 0] + goal, pole)
@@ -160,10 +155,10 @@ def _reclining(place: Array, angle: float, share: float) -> Array:
     """A person between sitting with the feet under them and lying on the back, by a share from 0 to 1."""
     ends = _on_floor(_pose_of(angle, _SITS_UP)[None], place, angle)[0], lying(place, angle)
     pose = _pose_of(0.0, {name: (1 - share) * up + share * _LIES[name] for name, up in _SITS_UP.items()})
-    pose = (pose - pose[0]) @ (about(1, angle) @ about(0, -share * np.pi / 2)).T
+    pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -share * np.pi / 2)).T
     lowest = [float(end[:, 1].min()) for end in ends]
     pose[:, 1] += (1 - share) * lowest[0] + share * lowest[1] - pose[:, 1].min()
-    return pose + ((1 - share) * ends[0][0] + share * ends[1][0]) * [1, 0, 1]
+    return pose + ((1 - share) * ends[0][0] + share * ends[1][0]) * FLAT
 
 
 def rising(place: Array, angle: float, *, lies: bool) -> Sequence[tuple[float, Array]]:
@@ -189,10 +184,10 @@ def _pose_of(angle: float, left: Mapping[str, float], right: Mapping[str, float]
 
 def turns_of(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Turns:
     """The rotations of joints by angles in radians: flexed hips are negative, flexed knees positive."""
-    turns: Turns = {"pelvis": about(1, angle), "spine1": about(0, left["spine"]), "spine2": about(0, left["spine"])}
+    turns: Turns = {"pelvis": heading_matrix(angle)} | dict.fromkeys(("spine1", "spine2"), about(0, left["spine"]))
     for (side, sign), angles in zip(BOTH_SIDES, (left, right or left), strict=True):
         turns[f"{side}_shoulder"] = about(2, -sign * angles["shoulder"])
-        turns[f"{side}_elbow"] = about(1, -sign * angles["elbow"])
+        turns[f"{side}_elbow"] = heading_matrix(-sign * angles["elbow"])
         turns[f"{side}_hip"] = about(2, -sign * 0.02) @ about(0, angles["hip"])
         turns |= {f"{side}_{joint}": about(0, angles[joint]) for joint in ("knee", "ankle")}
     return turns
@@ -209,18 +204,16 @@ def poses_of(turns: Turns, count: int = 1) -> Array:
 def _on_floor(poses: Array, place: Array, angle: float) -> Array:
     """The poses (N, 22, 3) with their toes on the floor, where those of one who stands at ``place`` are."""
     soles = poses[:, TOES]
-    moved = poses - soles.mean(axis=1, keepdims=True) * [1, 0, 1]
+    moved = poses - soles.mean(axis=1, keepdims=True) * FLAT
     moved[..., 1] += SOLE - soles[..., 1].mean(axis=1)[:, None]
-    return moved + np.array([place[0], 0.0, place[1]]) + STANCE * np.array([np.sin(angle), 0.0, np.cos(angle)])
+    return moved + ahead_of(place, angle, STANCE)
+
+
+def ahead_of(place: Array, angle: float, metres: float) -> Array:
+    """The point (3,) on the floor so many metres ahead of a person at a place (2,) with a heading."""
+    return floor_points(place + metres * direction(angle))
 
 
 def about(axis: int, angle: Array | float) -> Array:
-    """(…, 3, 3) rotations about X (0), Y (1) or Z (2)."""
-    angle = np.asarray(angle, dtype=np.float64)
-    cos, sin, one, zero = np.cos(angle), np.sin(angle), np.ones_like(angle), np.zeros_like(angle)
-    rows = (
-        [one, zero, zero, zero, cos, -sin, zero, sin, cos],
-        [cos, zero, sin, zero, one, zero, -sin, zero, cos],
-        [cos, -sin, zero, sin, cos, zero, zero, zero, one],
-    )
-    return np.stack(rows[axis], axis=-1).reshape(*angle.shape, 3, 3)
+    """(…, 3, 3) rotations about X (0), Y (1) or Z (2) by radians (…)."""
+    return rotations_by(np.asarray(angle, dtype=np.float64)[..., None] * np.eye(3)[axis])

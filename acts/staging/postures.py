@@ -13,21 +13,21 @@ from itertools import pairwise
 import numpy as np
 
 from motion import FPS
+from motion.skeleton import TOES
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading
-from motion.vectors import Array
+from motion.vectors import Array, direction
 
 from .places import EVENLY, HALT, Standing
 from .poses import (
-    FLAT,
     HANDS,
     JOINT,
     LOWER,
     LYING,
     STANCE,
-    TOES,
     UPRIGHT,
     Pose,
+    all_but,
     at_rest,
     crouching,
     grounded,
@@ -96,7 +96,7 @@ def postures(
     place, angle = _place(person, stand, last)
     if last is None and now == "lies":  # across the other's way, and not with the feet towards them
         angle += math.pi / 2
-        place = place + LYING * np.array([math.sin(angle), math.cos(angle)])
+        place = place + LYING * direction(angle)
     poses: dict[int, Array] = {}
     begins = start + 1 if last is not None else start
     pose = _MAKES[now](place, angle) if last is None or now == "stands" else last
@@ -192,7 +192,7 @@ def posture_joints(
     down = [bool(pose[_HEAD, 1] - pose[0, 1] < LOW) for _, pose in poses]
     gets_down = (frame for (frame, _), was, now in zip(poses[1:], down, down[1:], strict=False) if now > was)
     folds = next(gets_down, first - FOLDS) + FOLDS
-    for joints, lies in ((LOWER, False), (FLAT, True)):
+    for joints, lies in ((LOWER, False), (all_but(HANDS), True)):
         inside = [each for each, low in zip(poses, down, strict=True) if first <= each[0] < last and low is lies]
         stoops = bool(inside) and inside[-1][1][0, 1] > _KNEELS
         laid = [
@@ -218,5 +218,5 @@ def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, flo
     angle = float(heading(pose[None])[0])
     if pose[0, 1] > UPRIGHT:
         return np.asarray(stand.places[person] + HALT * stand.speeds[person], dtype=float), angle
-    toes = pose[list(TOES)].mean(axis=0)[[0, 2]]
-    return toes - STANCE * np.array([np.sin(angle), np.cos(angle)]), angle
+    toes = pose[TOES].mean(axis=0)[[0, 2]]
+    return toes - STANCE * direction(angle), angle

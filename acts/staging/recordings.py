@@ -19,10 +19,10 @@ from acts.shapes import Figure, Gesture
 from motion import FPS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix, mirrored
-from motion.vectors import Array
+from motion.vectors import FLAT, Array, bearing, direction, floor_points
 
-from .places import Course, Standing, bearing, direction
-from .poses import JOINT, LOWER, placed
+from .places import Course, Standing
+from .poses import JOINT, LOWER, WRISTS, placed
 from .window import Frames, late_by
 
 RATE = 15
@@ -56,7 +56,7 @@ _MEETS = 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Take:
+class GestureTake:
     """A recorded gesture.
 
     Attributes:
@@ -113,7 +113,7 @@ def _read(name: str) -> Mapping[str, Array]:
     for each, poses in _kept(name).items():
         facing = heading(poses)
         mean = float(np.arctan2(np.sin(facing).mean(), np.cos(facing).mean()))
-        clips[each] = (poses - poses[:, :1].mean(0) * [1.0, 0.0, 1.0]) @ heading_matrix(-mean).T
+        clips[each] = (poses - poses[:, :1].mean(0) * FLAT) @ heading_matrix(-mean).T
     return clips
 
 
@@ -139,24 +139,24 @@ def _read_gaits(action: str) -> tuple[Gait, ...]:
         for name in sorted(name for name in kept if name.rpartition("-")[0] == action):
             poses = kept[name]
             along = poses[:, 0, 2] + 1e-6 * np.arange(len(poses))
-            gaits.append(Gait(poses - poses[:, :1] * [1.0, 0.0, 1.0], along, along[-1] * RATE / (len(along) - 1)))
+            gaits.append(Gait(poses - poses[:, :1] * FLAT, along, along[-1] * RATE / (len(along) - 1)))
     return tuple(gaits)
 
 
 @cache
-def takes(gesture: str, hands: str) -> tuple[Take, ...]:
+def takes(gesture: str, hands: str) -> tuple[GestureTake, ...]:
     """The takes of a gesture of the left hand, the right one, or both; those of the left are mirrored."""
     side = "right" if hands == "left" else hands
     clips = [poses for name, poses in _read("gestures").items() if name.startswith(f"{gesture}-{side}-")]
     return tuple(_marked(mirrored(poses) if hands == "left" else poses) for poses in clips)
 
 
-def _marked(poses: Array) -> Take:
-    wrists = poses[:, [JOINT["left_wrist"], JOINT["right_wrist"]], 1] - poses[:, :1, 1]
+def _marked(poses: Array) -> GestureTake:
+    wrists = poses[:, WRISTS, 1] - poses[:, :1, 1]
     height = (wrists - wrists.min()).max(axis=1)
     up = np.flatnonzero(height >= _UP * height.max())
     first = max(int(up[0]) - _RISES, 0)
-    return Take(poses[first : int(up[-1]) + _RISES + 1], int(up[0]) - first, int(up[-1]) - first)
+    return GestureTake(poses[first : int(up[-1]) + _RISES + 1], int(up[0]) - first, int(up[-1]) - first)
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +169,7 @@ class Performance:
         sinks: the hands sink again before it ends; others are held.
     """
 
-    take: Take
+    take: GestureTake
     begins: float
     lasts: float
     sinks: bool
@@ -281,10 +281,10 @@ def dancing(stand: Standing, frames: int, seed: int) -> Array:
     at = np.arange(frames)
     first = couple[:, 0, 0][:, [0, 2]]
     turn = bearing(stand.towards(0)) - bearing(first[1] - first[0])
-    spots, middle = np.insert(first, 1, 0.0, axis=1) @ heading_matrix(turn).T, stand.places.mean(axis=0)
-    shift = np.insert(middle, 1, 0.0) - spots.mean(axis=0)
+    spots, middle = floor_points(first) @ heading_matrix(turn).T, stand.places.mean(axis=0)
+    shift = floor_points(middle) - spots.mean(axis=0)
     poses = np.stack([sampled(one, _to_and_fro(at, len(one))) for one in couple]) @ heading_matrix(turn).T + shift
-    apart = np.insert(stand.places, 1, 0.0, axis=1) - (spots + shift)
+    apart = floor_points(stand.places) - (spots + shift)
     return np.asarray(poses + apart[:, None, None] * (1 - minimum_jerk(at / FPS / _MEETS))[:, None, None])
 
 

@@ -6,7 +6,7 @@ here adds that and nothing else. :mod:`.stage` makes scores of acts.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Literal
@@ -14,37 +14,16 @@ from typing import Literal
 from acts import shapes
 from acts.plan import other_of
 from acts.shapes import Figure, Gesture, Limb
+from motion.skeleton import SIDES
 
-SIDES = ("left", "right")
-Way = Literal[
-    "to",
-    "away",
-    "past",
-    "around",
-    "behind",
-    "beside",
-    "along",
-    "after",
-    "back",
-    "aside",
-    "ahead",
-    "to and fro",
-    "turn",
-    "face",
-    "stay",
-    "averted",
-    "back to back",
-    "hold",
-    "spar",
-    "thing",
-]
-"""Ways over the floor, and of staying: those of :class:`acts.shapes.Go`; a ``turn``
-on the spot and one to ``face`` the other; somebody who stays, with their back ``averted``, or ``back to back``; two who
-go round each other in ``hold`` or ``spar``; and a way to a ``thing``."""
+Way = Literal[shapes.Way, "turn", "face", "stay", "averted", "back to back", "hold", "spar", "thing"]
+"""Ways over the floor, and of staying: those of :class:`acts.shapes.Go`; a ``turn`` on the spot and one to ``face``
+the other; somebody who stays, with their back ``averted``, or ``back to back``; two who go round each other in ``hold``
+or ``spar``; and a way to a ``thing``."""
 _TO_SEATS = ("to", "beside", "away", "ahead", "thing", "along")
 """Ways at whose end people may sit down."""
-IN_PLACE = ("stay", "face", "back to back")
-"""Ways that need no legs."""
+IN_PLACE = ("stay", "averted", "back to back")
+"""Ways of people who stay as they are."""
 LOW = frozenset(("leg", "foot"))
 """Parts of a standing person's body that one kneels down to reach."""
 LOWERED = frozenset(("kneels", "crouches", "bends down"))
@@ -227,13 +206,18 @@ class Score:
     @property
     def going(self) -> set[str]:
         """The people who walk, jump, dance or the like."""
-        going = {move.person for move in self.moves if move.way not in IN_PLACE}
+        going = leaving(move for move in self.moves if move.way != "face")
         return going | self.on_feet | set(self.figures)
 
     @property
     def joined(self) -> bool:
         """True if two hold or carry each other, so that neither can be placed alone."""
         return bool(self.lift or self.twirls or self.hold)
+
+
+def leaving(moves: Iterable[Move]) -> set[str]:
+    """The people who leave their place, or turn in it."""
+    return {move.person for move in moves if move.way not in IN_PLACE}
 
 
 def goes(moves: Sequence[Move]) -> bool:

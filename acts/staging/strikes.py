@@ -12,14 +12,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from motion.skeleton import SIDES
 from motion.transforms import heading_matrix
-from motion.vectors import Array
+from motion.vectors import Array, bearing, floor_points
 
 from .gestures import Place
 from .places import Course
-from .poses import HANDS, JOINT, TRUNK, bending
+from .poses import BOTH_SIDES, HANDS, JOINT, TRUNK, bending
 from .postures import DUCKING
-from .score import SIDES, Score, Strike
+from .score import Score, Strike
 from .window import KnownFrames, Stretch
 
 _Given = tuple[int, tuple[str, ...], tuple[tuple[int, ...], Array]]
@@ -94,7 +95,7 @@ RESTS, EVERY = 20, 8
 """Frames from the last pose of a blow to a pose at rest, and between two of these."""
 
 
-def blows(struck: Strike, frames: int, *, first: int = 0) -> list[Blow]:
+def blows(struck: Strike, frames: int, *, first: int) -> list[Blow]:
     """The blows of a beat of so many frames, from its ``first`` frame at which the two are at their distance."""
     period = BOUTS[struck.bout].period * (1 if len(set(struck.turns)) > 1 or struck.hands else 2)
     if struck.bout == "throws" and not struck.goes_on:  # each in its own share of the beat
@@ -128,7 +129,7 @@ def poses(bout: str, side: str, place: Array, other: Array) -> tuple[tuple[int, 
         N frames, and (N, 22, 3) metres, of which only the trunk and the wrist of that side are meant.
     """
     line = np.asarray(other) - place
-    angle, sign = float(np.arctan2(line[0], line[1])), 1.0 if side == "left" else -1.0
+    angle, sign = bearing(line), 1.0 if side == "left" else -1.0
     wrist, turn = JOINT[f"{side}_wrist"], heading_matrix(angle)
     back, ahead = BOUTS[bout].drawn, BOUTS[bout].landed
     drawn = bending(place, angle + sign * _TWIST / 2, _LEAN)
@@ -136,7 +137,7 @@ def poses(bout: str, side: str, place: Array, other: Array) -> tuple[tuple[int, 
     landed = bending(place, angle - sign * _TWIST, _LEAN)
     if ahead is None:
         pose = bending(np.asarray(other), angle + np.pi, _LEAN)
-        head = pose[JOINT["head"]] + landed[0] - pose[0] + np.array([line[0], 0.0, line[1]])
+        head = pose[JOINT["head"]] + landed[0] - pose[0] + floor_points(line)
         if bout == "slaps":
             head = head + turn @ (_CHEEK * [sign, 1.0, -1.0])
         shoulder = landed[JOINT[f"{side}_shoulder"]]
@@ -151,10 +152,9 @@ def poses(bout: str, side: str, place: Array, other: Array) -> tuple[tuple[int, 
 
 def ready(place: Array, other: Array, reach: Array = _READY) -> Array:
     """A pose (22, 3) of a person with both hands ready, towards the other; places as above."""
-    line = np.asarray(other) - place
-    angle = float(np.arctan2(line[0], line[1]))
+    angle = bearing(np.asarray(other) - place)
     pose = bending(place, angle, _LEAN)
-    for side, sign in (("left", 1.0), ("right", -1.0)):
+    for side, sign in BOTH_SIDES:
         pose[JOINT[f"{side}_wrist"]] = pose[0] + heading_matrix(angle) @ (reach * [sign, 1.0, 1.0])
     return pose
 
@@ -170,7 +170,7 @@ def strike_parts(struck: Strike, score: Score, stretch: Stretch) -> list[KnownFr
 
     Args:
         struck: the blows of the beat.
-        told: by the beat.
+        score: of the beat.
         stretch: the beat.
     """
     courses = [stretch.course(person) for person in (0, 1)]

@@ -12,13 +12,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from motion import FPS
+from motion.skeleton import SIDES
 from motion.transforms import facing, mirrored
-from motion.vectors import Array, unit
+from motion.vectors import FLAT, Array, leftwards, unit
 
 from .places import Course
 from .poses import JOINT, LOWER, TRUNK, kneeling, leaning, placed, upright
 from .recordings import drawn
-from .score import SIDES, Touch
+from .score import Touch
 from .window import GETS_DOWN, REACHES, KnownFrames, Stretch
 
 _JOINTS = {
@@ -166,10 +167,10 @@ def touched(touch: Touch, other: Array, own: Array) -> Array:
         place = other[joint] + _SKIN * unit(shoulder - other[joint])
         if _goes_round(touch):
             _, ahead, aside, up = _ROUND[touch.part]
-            across = unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
+            across = unit((shoulder - own[0]) * FLAT)
             place = other[joint] + ahead * facing(other) + aside * across + np.array([0.0, up, 0.0])
         elif len(joints) == 1 and len(touch.sides) == 2:
-            place = place + 0.08 * unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
+            place = place + 0.08 * unit((shoulder - own[0]) * FLAT)
         if touch.part == "back" and len(joints) == 1:
             place = place + _PALM * unit(shoulder - back)
         poses.append(place)
@@ -178,8 +179,7 @@ def touched(touch: Touch, other: Array, own: Array) -> Array:
 
 def inner_side(other: Array, place: Array, angle: float) -> str:
     """The side, "left" or "right", on which a person at a place (2,) has the other (22, 3)."""
-    left = np.array([np.cos(angle), -np.sin(angle)])
-    return SIDES[0] if float((np.asarray(other)[0][[0, 2]] - place) @ left) > 0 else SIDES[1]
+    return SIDES[0] if float((np.asarray(other)[0][[0, 2]] - place) @ leftwards(angle)) > 0 else SIDES[1]
 
 
 def arms_beside(touch: Touch, other: Array, place: Array, angle: float) -> tuple[str, ...]:

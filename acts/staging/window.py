@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.transforms import Placement
-from motion.vectors import Array
+from motion.vectors import Array, floor_points
 
 from .places import HALT, Course, Standing, Way2D
 from .poses import upright
@@ -202,7 +202,7 @@ def known_paths(
         placement: from the scene's world to the network's frame.
     """
     base = math.atan2(placement.turn[2, 0], placement.turn[0, 0])
-    moved = placement.to_network(np.insert(places, 1, 0.0, axis=1))[:, [0, 2]]
+    moved = placement.to_network(floor_points(places))[:, [0, 2]]
     known = np.isfinite(headings)
     return [
         KnownPath(person, frames[own].tolist(), moved[own], headings[own] - base if turned else None, turned)
@@ -211,7 +211,7 @@ def known_paths(
     ]
 
 
-def late_by(seed: int, person: int, frames: int = SHORT) -> float:
+def late_by(seed: int, person: int, frames: int) -> float:
     """Seconds by which a person begins later than they could: two people who wave do not wave as one."""
     later, *wait = np.random.default_rng(seed).uniform(0.0, 1.0, 3)
     drawn = 0.5 * float(wait[person]) + (0.5 if (later < 0.5) is (person == 0) else 0.0)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from motion import InputError
-from motion.hands import SIDES
+from motion.skeleton import SIDES
 from motion.things import FURNITURE, Mesh, Thing, shape
 from motion.things.hands import WITHIN, Hands, Moment, kick, level, lowest, meeting, release, smoothed
 from motion.things.tracks import BLEND, Course, Track, at_rest, held, takes_both_hands, upright_frame
@@ -31,6 +32,8 @@ TABLE = 0.74
 """Height of a table in metres, where the hand does not say it."""
 TABLES = (0.45, 1.0)
 """Heights that a hand may ask for."""
+IN_HAND = frozenset(("holds", "takes", "plays", "fights", "uses", "gives", "drops", "throws", "rolls", "bounces"))
+"""What is done with a thing by somebody who has it in their hand, and takes it up or over for that."""
 
 
 @dataclass
@@ -63,7 +66,10 @@ class ThingCourse:
     def thing(self) -> Thing:
         """The thing with its track."""
         for use in self.uses:
-            getattr(self, f"_{use.does}")(use)
+            if use.does not in IN_HAND:
+                getattr(self, f"_{use.does}")(use)
+            elif self._takes_up(use, use.agents[0]) and (then := getattr(self, f"_{use.does}", None)):
+                then(use)
         places, rotations = self.course.places, self.course.rotations
         return Thing(self.kind, self.surface, places, rotations, self.name)
 
@@ -166,13 +172,8 @@ class ThingCourse:
         self._say(use, moment.frame, to="ab"[receiver])
 
     def _gives(self, use: Use) -> None:
-        if self._takes_up(use, use.agents[0]) and use.other is not None:
+        if use.other is not None:
             self._pass(use, use.agents[0], use.other)
-
-    def _holds(self, use: Use) -> None:
-        self._takes_up(use, use.agents[0])
-
-    _takes = _plays = _fights = _uses = _holds
 
     def _lifts(self, use: Use) -> None:
         if self.holder is not None:
@@ -197,9 +198,7 @@ class ThingCourse:
         self._let_go(use, who, moment.frame)
 
     def _drops(self, use: Use) -> None:
-        who = use.agents[0]
-        if self._takes_up(use, who):
-            self._let_go(use, who, (use.start + use.stop) // 2)
+        self._let_go(use, use.agents[0], (use.start + use.stop) // 2)
 
     def _let_go(self, use: Use, who: int, frame: int) -> None:
         hands = self.hands
@@ -220,31 +219,24 @@ class ThingCourse:
         self._say(use, frame, on=use.on or "floor")
 
     # ---- throws ----------------------------------------------------------------------------------------
-    def _release(self, thrower: int, use: Use) -> Any:
+    def _release(self, thrower: int, use: Use) -> Moment:
         way = level((self.hands.joint(1 - thrower, "pelvis") - self.hands.joint(thrower, "pelvis")).mean(axis=0))
         towards = way + np.array([0.0, 0.4, 0.0])
         return release(self.hands, thrower, use.start, use.stop, towards)
 
     def _throws(self, use: Use) -> None:
         who = use.agents[0]
-        if not self._takes_up(use, who):
-            return
         moment = self._release(who, use)
         if moment.sides[0] != self.side:
             before = max(moment.frame - round(0.6 * self.hands.fps), 0)
             self._take(before, who, moment.sides[0])
-        caught = next((u for u in self._after(use) if u.does == "catches"), None)
+        caught = next((then for one, then in pairwise(self.uses) if one is use and then.does == "catches"), None)
         if use.other is None and caught is None:
             self._throw_away(use, who, moment.frame)
         else:
             catcher = caught.agents[0] if caught else use.other
             assert catcher is not None
             self._fly(use, moment.frame, catcher)
-
-    def _after(self, use: Use) -> Sequence[Use]:
-        """The next use of the thing, in a list of one, or none."""
-        place = list(self.uses).index(use)
-        return self.uses[place + 1 : place + 2]
 
     def _fly(self, use: Use, frame: int, catcher: int) -> None:
         """A throw that is caught by the hand that is nearest when it comes down."""
@@ -280,10 +272,7 @@ class ThingCourse:
 
     def _rolls(self, use: Use) -> None:
         """Let go where the hand is lowest, it rolls over the floor to the other's feet, or three metres ahead."""
-        who, hands = use.agents[0], self.hands
-        if not self._takes_up(use, who):
-            return
-        self._roll(use, lowest(hands, who, use.start, use.stop, self.side).frame)
+        self._roll(use, lowest(self.hands, use.agents[0], use.start, use.stop, self.side).frame)
 
     def _kicks(self, use: Use) -> None:
         """Struck by the foot that swings fastest, it rolls over the floor as :meth:`_rolls` lets it."""
@@ -306,11 +295,8 @@ class ThingCourse:
 
     def _bounces(self, use: Use) -> None:
         """From the hand to the floor and back, as often as the hand goes down."""
-        who, hands = use.agents[0], self.hands
-        if not self._takes_up(use, who):
-            return
         radius = float(self.surface.size[1]) / 2
-        under = hands.palms[who, self.side] - [0.0, radius + 0.02, 0.0]
+        under = self.hands.palms[use.agents[0], self.side] - [0.0, radius + 0.02, 0.0]
         self.course.bounce(under, use.start, use.stop, radius)
         self._say(use, use.start)
 
@@ -327,7 +313,7 @@ class ThingCourse:
     # ---- carried by two --------------------------------------------------------------------------------
     def _carries(self, use: Use) -> None:
         if len(use.agents) == 1:
-            self._holds(use)
+            self._takes_up(use, use.agents[0])
         else:
             self.holder = None
             self._say(use, use.start, to="ab"[use.agents[1]])
@@ -355,7 +341,7 @@ def courses(hands: Hands, uses: Iterable[Use]) -> list[ThingCourse]:
     """One course a thing: uses of one name follow each other, and two who each hold one have two."""
     several: dict[tuple[str, str], list[Use]] = {}
     for use in uses:
-        if use.does in ("sits", "passes", "faces", "opens", "closes", ""):
+        if use.does in ("sits", "passes", "faces", "opens", "closes"):
             continue
         if use.kind in FURNITURE and use.does != "carries":
             continue

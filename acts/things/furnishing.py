@@ -20,10 +20,11 @@ from acts.checking import Verdict, decided, rules_of
 from acts.lexicon import NOUNS, is_fixture, is_listed, kind_of, lexicon
 from acts.plan import Act, Plan, PlanFrames
 from motion import SMPL22, Duet
-from motion.hands import MOST_GRIPS, SIDES, Grip
+from motion.hands import MOST_GRIPS, Grip
 from motion.metrics.bodies import point_segment_distance
 from motion.metrics.sentences.joints import Motion, stretches
 from motion.metrics.sentences.language import mask_of, masks
+from motion.skeleton import SIDES
 from motion.things import MOST_THINGS, Thing
 from motion.things.hands import Hands
 from motion.things.sight import looked_at
@@ -37,7 +38,7 @@ Row = dict[str, Any]
 """A thing as a manifest holds it: its kind, its name, and what is done with it."""
 
 
-def furnish(duet: Duet, plans: Sequence[PlanFrames], lengths: Sequence[float] = ()) -> Duet:
+def furnish(duet: Duet, plans: Sequence[PlanFrames], lengths: Sequence[float]) -> Duet:
     """Two people with things, shapes of hands, and a row a thing in the manifest.
 
     Args:

@@ -52,7 +52,7 @@ class Use:
     words: str = ""
 
 
-def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) -> list[Use]:
+def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float]) -> list[Use]:
     """The uses of things in a plan, in the order of time.
 
     Args:
@@ -95,7 +95,7 @@ def _at_desks(uses: Sequence[Use]) -> list[Use]:
     return seated
 
 
-def act_frames(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) -> Iterator[tuple[Act, int, int]]:
+def act_frames(plan: Plan, start: int, stop: int, lengths: Sequence[float]) -> Iterator[tuple[Act, int, int]]:
     """The acts of a plan that happen, each with its frames; the arguments are those of :func:`uses_of`."""
     groups = [[act for act in group if act.happens] for group in plan.beats()]
     edges = _edges(groups, start, stop, lengths)

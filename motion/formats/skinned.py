@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from motion.body import Body, bone_rotations, load_body
 from motion.clip import Clip, Duet
-from motion.hands import FINGERS, SIDES, angles
+from motion.hands import FINGERS, angles
 from motion.kinematics import local_rotations
 from motion.looks import BODIES as COLOURS
-from motion.skeleton import SMPL22
+from motion.skeleton import SIDES, SMPL22
 from motion.vectors import Array
 
 # ---- Fingers: 30 joints more below the wrists, in the order of :class:`motion.hands.Fingers` -------------------------

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22, Duet
 from motion.body import bone_rotations
-from motion.hands import SIDES
+from motion.skeleton import SIDES
 from motion.vectors import FLAT, Array, unit
 
 PALM, DEEP = 0.085, 0.025

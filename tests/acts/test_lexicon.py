@@ -39,7 +39,6 @@ WRONG = {
         '[x]\nframes = ["{a} hug"]\ncaption = ["x"]\nreads = ["x"]\nstage = [{do = "fly"}]',
         "stage.0: 'fly' is not known: use one of 'go', ",
     ),
-    "toml": ("[x\n", "is not TOML"),
     "table": ("x = 3\n", "write the entry as a table"),
     "reads": ('\n[zig]\nframes = ["{a} zig"]\ncaption = ["x"]\nreads = ["She sleeps."]', "is not read as zig"),
     "ignores": ('[zig]\nframes = ["{a} bow"]\ncaption = ["x"]\nreads = ["She bows."]\nignores = ["He bows."]', "zig"),

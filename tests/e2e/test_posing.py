@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
+from tests.motion.bodies import bone_lengths
 
 from .playing import pause, settled_box, until
 
@@ -25,11 +26,6 @@ DIRECT = """() => {
     });
 }"""
 WRIST, ANKLE, HEAD = (SMPL22.index(name) for name in ("right_wrist", "left_ankle", "head"))
-
-
-def lengths(pose: np.ndarray) -> np.ndarray:
-    parents, children = np.array(SMPL22.bones).T
-    return np.linalg.norm(pose[children] - pose[parents], axis=-1)
 
 
 @pytest.fixture
@@ -57,7 +53,7 @@ def test_bones_keep_their_lengths_and_joints_go_where_they_reach(still: Any) -> 
             way = rng.normal(size=3)
             target = pose[joint] + reach * way / np.linalg.norm(way)
             pulled = np.array(still.evaluate(PULL, [pose.tolist(), joint, target.tolist()]))
-            np.testing.assert_allclose(lengths(pulled), lengths(pose), atol=1e-9)
+            np.testing.assert_allclose(bone_lengths(pulled), bone_lengths(pose), atol=1e-9)
             assert pulled[:, 2].min() > min(pose[:, 2].min(), 0.0), "nobody is pushed through the floor"
             if reach == 0:
                 np.testing.assert_allclose(pulled, pose, atol=2e-3)

@@ -10,14 +10,12 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, InputError
+from tests.inference.runs import run
+from tests.motion.bodies import bone_lengths
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, Result
 from webdemo.inference.engine import Engine
 
 REQUEST = GenerateRequest(prompt="Two people shake hands.", seconds=2.0, seed=7, steps=6)
-
-
-def result_of(engine: Engine, request: GenerateRequest) -> Result:
-    return next(event for event in engine.run(request) if isinstance(event, Result))
 
 
 def test_progress_counts_every_step_and_ends_in_one_result(engine: Engine) -> None:
@@ -31,19 +29,17 @@ def test_progress_counts_every_step_and_ends_in_one_result(engine: Engine) -> No
 
 
 def test_the_same_request_gives_the_same_bytes_and_another_seed_does_not(engine: Engine) -> None:
-    first, again = result_of(engine, REQUEST), result_of(engine, REQUEST)
-    other = result_of(engine, replace(REQUEST, seed=8))
+    first, again = run(engine, REQUEST), run(engine, REQUEST)
+    other = run(engine, replace(REQUEST, seed=8))
     assert first.duets[0].positions.tobytes() == again.duets[0].positions.tobytes()
     assert first.manifest == again.manifest
     assert not np.allclose(first.duets[0].positions, other.duets[0].positions)
 
 
 def test_cleanup_ends_on_constant_bones_above_the_floor(engine: Engine) -> None:
-    result = result_of(engine, replace(REQUEST, seconds=3.0))
+    result = run(engine, replace(REQUEST, seconds=3.0))
     positions = result.duets[0].positions
-    for parent, joint in SMPL22.bones:
-        length = np.linalg.norm(positions[:, :, joint] - positions[:, :, parent], axis=-1)
-        np.testing.assert_allclose(length, SMPL22.bone_lengths[joint], atol=2e-3)
+    np.testing.assert_allclose(bone_lengths(positions) - SMPL22.bone_lengths[1:], 0, atol=2e-3)
     assert result.readouts[0]["after"]["bone_drift"] < 0.1
 
 
@@ -53,7 +49,7 @@ def test_damping_zero_is_the_plain_sampler_bit_for_bit(engine: Engine) -> None:
     from models.diffusion import make_scheduler, sample_noise
 
     request = replace(REQUEST, damping=0.0, cleanup=False)
-    ours = result_of(engine, request).duets[0].positions
+    ours = run(engine, request).duets[0].positions
 
     generator = engine.pipeline("intergen")
     model, layout = generator.model, generator.model.layout
@@ -77,18 +73,18 @@ def test_cancel_takes_effect_within_one_step_and_the_next_run_works(engine: Engi
                 if event.step == 3:
                     token.cancel()
     assert seen == [1, 2, 3]
-    assert result_of(engine, REQUEST).duets
+    assert run(engine, REQUEST).duets
 
 
 def test_what_cannot_be_shown_is_said(engine: Engine) -> None:
-    three = result_of(engine, replace(REQUEST, prompt="Three people hug.")).notes
+    three = run(engine, replace(REQUEST, prompt="Three people hug.")).notes
     assert any("Only two people" in note for note in three)
     for prompt, unread in (
         ("They consider their taxes.", True),
         ("He proposes to her.", False),
         ("They dance a tango.", False),
     ):
-        notes = " ".join(result_of(engine, replace(REQUEST, prompt=prompt)).notes)
+        notes = " ".join(run(engine, replace(REQUEST, prompt=prompt)).notes)
         assert ("Not understood" in notes) is unread, prompt
         assert "far from anything" not in notes or unread, prompt
 

@@ -15,7 +15,7 @@ from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
 
 from .followed import Follower, speeds
-from .test_scenes import positions, run
+from .runs import positions, run
 
 FASTEST = 6.0
 """Metres a second: a fast run, which nobody in a planned scene needs to pass."""

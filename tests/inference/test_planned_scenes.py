@@ -11,10 +11,11 @@ from acts.staging.poses import lying, seated, stooping, upright
 from acts.staging.postures import posture_joints
 from motion import SMPL22
 from motion.metrics.quality import mirror_gap
+from tests.motion.bodies import bone_lengths
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
 from webdemo.inference.story import Beat
 
-from .test_scenes import positions, run
+from .runs import positions, run
 
 QUICK: dict[str, Any] = {"steps": 3, "seed": 1}
 FEET = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
@@ -195,9 +196,7 @@ def test_a_look_at_a_window_is_judged_where_the_window_is_made(engine: Engine) -
 def test_clean_up_leaves_a_foot_that_is_raised_or_a_heel(engine: Engine, prompt: str, joint: str, least: float) -> None:
     motion = made(engine, prompt)
     assert motion[0, :, SMPL22.index(joint), 1].max() > least
-    bones = np.array(SMPL22.bones)
-    lengths = np.linalg.norm(motion[:, :, bones[:, 0]] - motion[:, :, bones[:, 1]], axis=-1)
-    assert np.ptp(lengths, axis=1).max() < 0.01, "an arm that is free goes with the shoulder"
+    assert np.ptp(bone_lengths(motion), axis=1).max() < 0.01, "an arm that is free goes with the shoulder"
 
 
 def test_a_head_that_is_tilted_stays_so_and_is_not_turned_to_the_other(engine: Engine) -> None:

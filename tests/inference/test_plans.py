@@ -21,7 +21,7 @@ from webdemo.inference.requests.plans import KeptPlan, WindowPlan, kept_plan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, request, sentences
 
 from .people import waver
-from .test_scenes import positions, run
+from .runs import positions, run
 
 QUICK: dict[str, Any] = {"steps": 2, "seed": 4}
 STORY = SceneRequest(

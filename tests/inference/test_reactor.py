@@ -12,6 +12,7 @@ from models.motion_tokens import FEATURES, encode
 from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, CompactStream
 from models.weights_io import load_network, save_network
 from motion import SMPL22, InputError
+from tests.motion.bodies import bone_lengths
 from webdemo.inference import ReactRequest, Result
 from webdemo.inference.engine import Engine
 from webdemo.inference.pipelines import regennet as reactor
@@ -172,9 +173,7 @@ def test_offline_damping_moves_the_reactor_alone(engine: Engine) -> None:
 
 def bones_off(positions: np.ndarray) -> float:
     """How far bones are from the skeleton's, on average, in metres."""
-    parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
-    lengths = np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
-    return float(np.abs(lengths - SMPL22.bone_lengths[children]).mean())
+    return float(np.abs(bone_lengths(positions) - SMPL22.bone_lengths[1:]).mean())
 
 
 def test_words_that_ask_for_a_touch_reach_the_damping(

@@ -89,7 +89,7 @@ def test_who_stands_too_close_steps_apart_first(follower: Follower, words: str, 
 
 def test_the_heads_of_two_who_bow_are_counted_to_their_tops() -> None:
     places, headings = np.array([[0.0, 0.0], [0.0, 0.9]]), np.array([0.0, np.pi])
-    poses = {person: [(30, bending(places[person], float(headings[person])))] for person in (0, 1)}
+    poses = {person: [(30, bending(places[person], float(headings[person]), 0.9))] for person in (0, 1)}
     room = roomy(Standing(places, headings), poses, [], first=False)
     assert room.delay > 0 and 1.2 < room.stand.gap() < 1.8
     down = roomy(Standing(places, headings), poses, [1], first=False)

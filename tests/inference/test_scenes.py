@@ -10,24 +10,13 @@ import torch
 from acts import Plan
 from motion import SMPL22, Duet
 from motion.skeleton import ARMS
+from tests.inference.runs import positions, run
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.sentences import as_scene
 
 QUICK: dict[str, Any] = {"steps": 3}
 BEATS = (Beat("They wave.", seconds=2.0), Beat("They walk away.", seconds=2.5), Beat("They bow.", seconds=1.5))
-
-
-def run(engine: Engine, request: Any, cancel: CancelToken | None = None) -> Result:
-    *_, result = engine.run(request, cancel=cancel)
-    assert isinstance(result, Result)
-    return result
-
-
-def positions(result: Result, sample: int = 0) -> np.ndarray:
-    duet = result.duets[sample]
-    assert isinstance(duet, Duet)
-    return duet.positions
 
 
 @pytest.fixture(scope="module")

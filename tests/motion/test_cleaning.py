@@ -12,11 +12,7 @@ from motion.kinematics import project_to_skeleton
 from motion.limbs import solve_two_bones, steadied
 from motion.skeleton import FEET
 
-from .bodies import FPS, gliding, marching
-
-
-def _bones(positions):
-    return np.stack([np.linalg.norm(positions[:, j] - positions[:, p], axis=-1) for p, j in SMPL22.bones], axis=-1)
+from .bodies import FPS, bone_lengths, gliding, marching
 
 
 def test_a_gliding_person_stands_still_after_planting():
@@ -27,7 +23,7 @@ def test_a_gliding_person_stands_still_after_planting():
     feet = planted[:, list(FEET)]
     assert np.ptp(feet[..., [0, 2]], axis=0).max() < 1e-6
     assert feet[..., 1].min() > -1e-9
-    np.testing.assert_allclose(_bones(planted), _bones(positions), atol=1e-6)
+    np.testing.assert_allclose(bone_lengths(planted), bone_lengths(positions), atol=1e-6)
     # The body still glides above the feet.
     np.testing.assert_allclose(planted[:, 0, 0], positions[:, 0, 0], atol=1e-9)
 
@@ -37,7 +33,7 @@ def test_marching_is_planted_without_jumps():
     positions[..., 1] -= 0.03
     planted = plant_feet(positions, foot_contacts(positions, FPS))
     assert planted[:, list(FEET), 1].min() >= -1e-9
-    np.testing.assert_allclose(_bones(planted), _bones(positions), atol=1e-6)
+    np.testing.assert_allclose(bone_lengths(planted), bone_lengths(positions), atol=1e-6)
     # Metres a frame that the correction itself moves.
     steps = np.linalg.norm(np.diff(planted - positions, axis=0), axis=-1)
     assert steps.max() < 0.06
@@ -81,7 +77,7 @@ def test_held_frames_stay_and_feet_beside_them_stand_where_they_stood():
     assert (contacts[59] & contacts[60]).any()
     planted = plant_feet(positions, contacts, held=held)
     np.testing.assert_array_equal(planted[held], positions[held])
-    np.testing.assert_allclose(_bones(planted), _bones(positions), atol=1e-6)
+    np.testing.assert_allclose(bone_lengths(planted), bone_lengths(positions), atol=1e-6)
     for foot, stands in zip(FEET, contacts.T, strict=True):
         if stands[59:63].all():
             assert np.linalg.norm(np.diff(planted[59:63, foot], axis=0), axis=-1).max() < 0.01
@@ -115,7 +111,7 @@ def test_the_heel_of_a_foot_that_is_left_behind_rises_and_the_body_stays_up():
     assert positions[-1, 0, 1] - planted[-1, 0, 1] < 0.04
     assert planted[-1, ankle, 1] > foot[0, 0, 1] + 0.05
     np.testing.assert_allclose(planted[-1, toe], foot[0, 1], atol=0.01)
-    np.testing.assert_allclose(_bones(planted), _bones(positions), atol=1e-6)
+    np.testing.assert_allclose(bone_lengths(planted), bone_lengths(positions), atol=1e-6)
 
 
 def test_a_body_sinks_no_deeper_than_two_centimetres_for_feet_out_of_reach():

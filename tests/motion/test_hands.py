@@ -10,8 +10,9 @@ import pytest
 
 from motion import SMPL22, Duet, InputError, formats
 from motion.body import load_body, skin
-from motion.hands import SHAPES, SIDES, Grip, angles
+from motion.hands import SHAPES, Grip, angles
 from motion.looks import LOOKS
+from motion.skeleton import SIDES
 from tests.motion.bodies import marching
 
 POSE = SMPL22.rest_positions()[None] + np.array([0.0, 0.95, 0.0])

@@ -43,10 +43,6 @@ def plausible_motion(seed: int, frames: int = 60) -> tuple[np.ndarray, np.ndarra
     return rotations, turns(swing(0.3), np.full(frames, 0.93), 0.3 * time_)
 
 
-def bone_lengths(positions: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(positions[:, 1:] - positions[:, list(SMPL22.parents[1:])], axis=-1)
-
-
 def recorded(layout_name: str, rotations: np.ndarray, root: np.ndarray) -> np.ndarray:
     """The joints of a layout on its own body; joints SMPL22 lacks at the root."""
     layout = LAYOUTS[layout_name]

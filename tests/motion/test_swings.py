@@ -10,6 +10,7 @@ from acts.staging.poses import kneeling, lying, upright
 from motion import SMPL22
 from motion.kinematics import bone_lengths
 from motion.swings import above_floor, lift_swinging_feet
+from tests.motion.bodies import bone_lengths
 
 Array = NDArray[np.floating]
 FPS = 30.0
@@ -19,9 +20,7 @@ ANKLE, TOE = SMPL22.index("right_ankle"), SMPL22.index("right_foot")
 def step(length: float = 0.9, frames: int = 14, *, before: int = 10, hips: float = 0.0) -> Array:
     """(T, 22, 3) a person who stands facing +Z and takes one flat step with the right foot."""
     total = frames + 2 * before
-    pose = np.zeros((22, 3))
-    for parent, joint in SMPL22.bones:
-        pose[joint] = pose[parent] + SMPL22.offsets[joint]
+    pose = SMPL22.rest_positions()
     pose[:, 1] -= pose[[10, 11], 1].min() - 0.02
     poses = np.repeat(pose[None], total, axis=0)
     share = np.clip((np.arange(total) - before) / frames, 0, 1)

@@ -26,6 +26,9 @@ from models.weights_io import save_network
 from . import checkpoint
 from .checkpoint import Parts
 
+SAVE_EVERY = 300.0
+"""Seconds between two checkpoints of a run."""
+
 
 @contextmanager
 def asked_to_end() -> Iterator[list[int]]:
@@ -139,7 +142,7 @@ class Loop(ABC):
         )
         torch._foreach_lerp_(kept, current, 1 - decay)
 
-    def run(self, *, minutes: float, save_every: float = 5.0) -> Iterator[dict[str, float]]:
+    def run(self, *, minutes: float) -> Iterator[dict[str, float]]:
         """Trains until the steps or the minutes are over, or somebody asks the process to end (Ctrl+C, SIGTERM).
 
         Yields each step's loss terms; saves regularly, and after the last step.
@@ -148,7 +151,7 @@ class Loop(ABC):
         with asked_to_end() as asked:
             while self.step < self.settings.steps and time.monotonic() - began < minutes * 60 and not asked:
                 yield self.train_step()
-                if time.monotonic() - saved > save_every * 60:
+                if time.monotonic() - saved > SAVE_EVERY:
                     self.save()
                     saved = time.monotonic()
         self.save()

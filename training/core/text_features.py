@@ -9,11 +9,11 @@ from pathlib import Path
 import torch
 import torch.nn.functional as F
 from safetensors import SafetensorError
-from safetensors.torch import load_file, save_file
+from safetensors.torch import load_file
 from torch import Tensor
 
 from models.text import MiniLM, TokenFeatures
-from motion.formats.files import replacing
+from training.core.checkpoint import write_tensors
 from training.core.loop import mixed_precision
 
 
@@ -33,8 +33,7 @@ class CaptionFeatures:
             stored = load_file(path)
         except (OSError, SafetensorError):
             stored = _kept(captions)
-            with replacing(path) as temporary:
-                save_file(stored, temporary)
+            write_tensors(path, stored)
         self.features, self.lengths = stored["features"], stored["lengths"]
         self.starts = torch.cat([torch.zeros(1, dtype=torch.long), self.lengths.cumsum(0)])
 

@@ -24,17 +24,16 @@ from pathlib import Path
 
 import numpy as np
 
-from motion import InputError
+from motion import FPS, InputError
 from motion.formats import ImportChoices, read_pair
 from motion.kinematics import project_to_skeleton
 from motion.transforms import canonicalize, resample, turn
+from motion.vectors import direction, floor_points
 from training.core.shell import exit_code
 
 from .build import save
 from .cues import Scene
 
-FPS = 30.0
-"""The processed files are taken as 30 frames a second, as their authors' loader does; the raw ones have 59.94."""
 SHORTEST = 30
 SPLITS = {"train.txt": "train", "val.txt": "validation", "test.txt": "test"}
 _MOST_SENTENCES = 20
@@ -73,6 +72,7 @@ def read_annotated(data: Path, second_acts: Collection[str] = ()) -> Iterator[Sc
     splits = _splits(data)
     for source, files, text in motions_in(data):
         name = source.partition("/")[2]
+        # The processed files are taken as 30 frames a second, as their authors do; the raw ones have 59.94.
         choices = ImportChoices(fps=FPS if files[0].suffix == ".npy" else None)
         people = _people(files[::-1] if name in second_acts else files, choices)
         sentences = [line.strip() for line in _lines(text) if line.strip()][:_MOST_SENTENCES]
@@ -148,7 +148,7 @@ def _apart(a: np.ndarray, b: np.ndarray, aside: float) -> np.ndarray | None:
     at any distance."""
     frames = min(len(a), len(b))
     for metres in _APART:
-        moved = b[:frames] + metres * np.array([np.sin(aside), 0.0, np.cos(aside)])
+        moved = b[:frames] + metres * floor_points(direction(aside))
         gaps = np.linalg.norm((moved - a[:frames])[:, 0, [0, 2]], axis=-1)
         if gaps.min() >= _ROOM:
             return np.stack([a[:frames], moved])

@@ -14,21 +14,19 @@ from pathlib import Path
 
 import numpy as np
 
-from motion import InputError
+from motion import FPS, InputError
 from motion.formats.files import replacing, write_text
 from training.core.shell import add_options, exit_code
 
 from .beats.script import compose
 from .checks import fault
-from .compose import FPS
 from .cues import Scene
 from .duets import load_duets
 from .library import Library
 from .pairs import load_pairs, scenes_of
-from .sources import load_sources
+from .sources import TEST_SHARE, load_sources
 
 logger = logging.getLogger(__name__)
-TEST_SHARE = 0.08
 NEEDS = ("walk", "walk-back", "idle", "wave", "bow")
 """Source actions without which no scene is composed."""
 TRIES = 30

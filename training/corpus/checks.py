@@ -6,10 +6,10 @@ import re
 
 import numpy as np
 
+from motion import FPS
 from motion.skeleton import FEET, SMPL22
 from motion.vectors import Array
 
-from .compose import FPS
 from .cues import Scene
 
 TRUNK = tuple(SMPL22.index(name) for name in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"))

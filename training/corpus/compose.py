@@ -12,21 +12,18 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from motion import FPS
 from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import pivoting, stepping
 from motion.kinematics import fit_rotations, forward_kinematics, global_rotations
-from motion.skeleton import SMPL22
+from motion.skeleton import SIDES, SMPL22
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading_matrix
 from motion.vectors import Array, slerp, wrapped
 
-FPS = 30
 ARMS = {
-    side: tuple(SMPL22.index(f"{side}_{joint}") for joint in ("collar", "shoulder", "elbow", "wrist"))
-    for side in ("left", "right")
+    side: tuple(SMPL22.index(f"{side}_{joint}") for joint in ("collar", "shoulder", "elbow", "wrist")) for side in SIDES
 }
-OTHER = {"left": "right", "right": "left"}
-"""The other side."""
 GLIDES = 0.6
 """Metres a second of a foot that stands, at most."""
 _MIRROR = np.diag([-1.0, 1.0, 1.0])
@@ -79,12 +76,12 @@ def mirror(motion: Motion) -> Motion:
     )
 
 
-def facing_at(motion: Motion, frame: int, *, window: int = 5) -> float:
+def facing_at(motion: Motion, frame: int) -> float:
     """Heading in radians around a frame; averaged over a stride where the person walks."""
     frame = frame % len(motion)
     near = motion.root[max(frame - 8, 0) : frame + 9]
-    if np.linalg.norm((near[-1] - near[0])[[0, 2]]) * FPS > 0.4 * len(near):
-        window = 16
+    walks = np.linalg.norm((near[-1] - near[0])[[0, 2]]) * FPS > 0.4 * len(near)
+    window = 16 if walks else 5
     return float(motion[max(frame - window, 0) : frame + window + 1].headings.mean())
 
 
@@ -140,6 +137,13 @@ def steer(motion: Motion, extra: Array, pace: Array | float = 1.0) -> Motion:
     steps[:, [0, 2]] *= np.broadcast_to(pace, len(motion))[:-1, None]
     root = np.concatenate([motion.root[:1], motion.root[:1] + np.cumsum(steps, axis=0)])
     return replace(motion, rotations=rotations, root=root)
+
+
+def looped(motion: Motion, again: Motion, frames: int, *, blend: int) -> Motion:
+    """At least so many frames: a motion and, as often as they need, another one, cross-faded over ``blend``."""
+    while len(motion) < frames:
+        motion = join(motion, again, blend=blend)
+    return motion
 
 
 def layer(base: Motion, over: Motion, *, start: int, joints: tuple[int, ...], blend: int = 10) -> Motion:

@@ -12,12 +12,13 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from motion import FPS
 from motion.limbs import limb_length, over_planted_feet, solve_two_bones
 from motion.skeleton import SMPL22
 from motion.smoothing import minimum_jerk
 from motion.vectors import FLAT, left_of, rotations_by, unit
 
-from .compose import ARMS, FPS, Array
+from .compose import ARMS, Array
 
 UP = np.array([0.0, 1.0, 0.0])
 SPINE = tuple(SMPL22.index(name) for name in ("spine1", "spine2", "spine3"))
@@ -26,19 +27,10 @@ ELBOW_DOWN = (0.45, -1.0, -0.25)
 """Direction of an elbow in its owner's frame: outwards, up, forwards."""
 FULL_REACH = 0.93
 """Share of its length that an arm extends before the trunk leans to help."""
+LEAN = 0.3
+"""Radians by which the trunk leans at most for an arm that reaches."""
 SOFT = 0.06
 """Share of its length, at its end, over which an arm that reaches far straightens ever more slowly."""
-
-
-def _below(joint: int) -> list[int]:
-    joints = [joint]
-    for parent, child in SMPL22.bones:
-        if parent in joints:
-            joints.append(child)
-    return joints[1:]
-
-
-_DESCENDANTS = {joint: _below(joint) for joint in (*SPINE, NECK)}
 
 
 def envelope(frames: int, start: int, arrive: int, leave: int, end: int) -> Array:
@@ -94,7 +86,7 @@ def bend(positions: Array, turn: Array, *, joints: tuple[int, ...] = SPINE) -> A
     positions = positions.copy()
     matrices = rotations_by(np.asarray(turn) / len(joints))
     for joint in joints:
-        moved = _DESCENDANTS[joint]
+        moved = SMPL22.below(joint)
         pivot = positions[:, joint : joint + 1]
         positions[:, moved] = pivot + (positions[:, moved] - pivot) @ np.swapaxes(matrices, -1, -2)
     return positions
@@ -121,7 +113,6 @@ def reach(
     weight: Array,
     *,
     elbow: tuple[float, float, float] = ELBOW_DOWN,
-    lean: float = 0.3,
     twist: float = 0.55,
 ) -> Array:
     """Brings one or both wrists to moving targets and back again.
@@ -134,7 +125,7 @@ def reach(
         targets: "left" and/or "right" to (T, 3) where that wrist should be.
         weight: (T,) from 0, the arm as it was, to 1, the wrist at its target.
         elbow: which way the elbows point (outwards, up, forwards).
-        lean, twist: most that the trunk may lean and turn, radians.
+        twist: radians by which the trunk turns at most.
 
     Returns:
         (T, 22, 3) with the same bone lengths.
@@ -145,7 +136,7 @@ def reach(
     pose, goals = positions[[full]], {side: target[[full]] for side, target in targets.items()}
     direction = towards(pose[:, 0], sum(goals.values()) / len(goals))
     turn = twist * {("left",): -1.0, ("right",): 1.0}.get(tuple(goals), 0.0)
-    trunk = np.cross(UP, direction) * lean + UP * turn
+    trunk = np.cross(UP, direction) * LEAN + UP * turn
     shares = np.linspace(0, 1, 6)
     missing = [_missing(bend(pose, share * trunk), goals) for share in shares]
     share = float(np.interp(0.0, -np.minimum.accumulate(missing), shares))

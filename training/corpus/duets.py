@@ -12,13 +12,12 @@ from pathlib import Path
 import numpy as np
 from scipy.ndimage import binary_opening, uniform_filter1d
 
-from motion import InputError
+from motion import FPS, InputError
 from motion.retarget import retarget_together
 from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, heading
 from motion.vectors import Array, runs
 
-from .compose import FPS
 from .cues import Beat, Scene
 from .sources import read_upright, unpacked
 from .telling import describe

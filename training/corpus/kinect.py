@@ -19,12 +19,12 @@ import numpy as np
 from scipy.io import loadmat
 from scipy.ndimage import median_filter
 
-from motion.errors import InputError
+from motion import FPS, InputError
 from motion.ik import body_scale, fit_skeleton
 from motion.kinematics import project_to_skeleton
 from motion.skeleton import K3HI15, SBU15, SMPL22, Skeleton
 from motion.transforms import canonicalize, heading_matrix, resample
-from motion.vectors import Array, wrapped
+from motion.vectors import Array, rotations_by, wrapped
 
 from .sources import unpacked
 
@@ -130,7 +130,6 @@ def _metres(path: Path) -> Array:
 # ---- repairs and bodies ------------------------------------------------------------------------------
 
 
-FPS = 30.0
 ANKLE = float(-SMPL22.offsets[SMPL22.index("left_foot"), 1])
 """Height of an ankle over its sole in metres."""
 _DEPTH_TRUST = 0.4  # a Kinect's depth is about this much less certain than its image plane, as a weight
@@ -206,8 +205,7 @@ def _turned_trunk(own: Array, ahead: Array, skeleton: Skeleton) -> Array:
 
 def upright(positions: Array, pitch: float) -> Array:
     """Camera coordinates turned so that Y is vertical, for a camera that looks down by ``pitch`` degrees."""
-    angle = np.radians(pitch)
-    return positions @ np.array([[1, 0, 0], [0, np.cos(angle), np.sin(angle)], [0, -np.sin(angle), np.cos(angle)]]).T
+    return positions @ rotations_by(np.radians([-pitch, 0.0, 0.0])).T
 
 
 def without_sideways_lean(positions: Array, skeleton: Skeleton) -> Array:
@@ -272,8 +270,8 @@ def unswap(positions: Array, skeleton: Skeleton, parts: Sequence[str], fps: floa
     return repaired
 
 
-def without_spikes(positions: Array, fps: float, *, threshold: float = 0.15) -> Array:
-    """NaN where a joint leaves its path for a moment: further than ``threshold`` metres from its median.
+def without_spikes(positions: Array, fps: float) -> Array:
+    """NaN where a joint leaves its path for a moment: further than 15 cm from its median.
 
     Args:
         positions: (T, J, 3) metres.
@@ -281,7 +279,7 @@ def without_spikes(positions: Array, fps: float, *, threshold: float = 0.15) -> 
     """
     window = 2 * round(fps / 6) + 1
     smooth = median_filter(positions, size=(window, 1, 1), mode="nearest")
-    spike = np.linalg.norm(positions - smooth, axis=-1) > threshold
+    spike = np.linalg.norm(positions - smooth, axis=-1) > 0.15
     # A joint that is far off half the time is moving, not jumping.
     spike &= spike.mean(axis=0) < 0.25
     return np.where(spike[..., None], np.nan, positions)

@@ -13,16 +13,16 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import find_peaks
 
+from motion import FPS
 from motion.kinematics import forward_kinematics
-from motion.skeleton import LEGS, SMPL22
+from motion.skeleton import LEGS, OTHER_SIDE, SMPL22
 from motion.transforms import leading_wrist
-from motion.vectors import wrapped
+from motion.vectors import FLAT, wrapped
 
-from .compose import OTHER, Motion, join, mirror, motion_from_positions, time_warp
+from .compose import Motion, join, looped, mirror, motion_from_positions, time_warp
 from .cues import SourceClip
 
 ONE_HANDED = ("bye", "guide", "respond")
-UPWARDS = np.array([0.0, 1.0, 0.0])
 STRIKES = {"punch": ("wrist", 12, 14), "kick": ("ankle", 30, 30), "slash": ("wrist", 32, 26)}
 """Actions whose clips hold several blows: the joint that strikes, and frames kept before and after a blow."""
 
@@ -99,7 +99,7 @@ class Library:
         """
         takes = self._load(action)
         if side is not None:
-            takes = [take for take in takes if take.side in (side, OTHER.get(side, side))]
+            takes = [take for take in takes if take.side in (side, OTHER_SIDE.get(side, side))]
         if not takes:
             raise LookupError(f"The {self.split} sources hold no {action!r} with side {side!r}.")
         wanted = [take for take in takes if style is None or take.style == style] or takes
@@ -115,7 +115,7 @@ class Library:
         return replace(
             chosen,
             motion=motion,
-            side=OTHER.get(chosen.side, chosen.side) if flip else chosen.side,
+            side=OTHER_SIDE.get(chosen.side, chosen.side) if flip else chosen.side,
             peaks=tuple(round(peak / speed) for peak in chosen.peaks),
             aim=-chosen.aim if flip else chosen.aim,
         )
@@ -128,8 +128,7 @@ class Library:
         motion = pick(rng, takes).motion
         if rng.random() < 0.5:
             motion = mirror(motion)
-        while len(motion) <= frames + 1:
-            motion = join(motion, motion, blend=20)
+        motion = looped(motion, motion, frames + 2, blend=20)
         start = int(rng.integers(0, len(motion) - frames))
         return motion[start : start + frames]
 
@@ -159,11 +158,11 @@ def pick(rng: np.random.Generator, items):
     return items[int(rng.integers(len(items)))]
 
 
-def calm(motion: Motion, *, radius: float = 0.35, frames: int = 300) -> list[Motion]:
-    """Pieces of an idle clip in which the person stays within ``radius`` metres of one place, and hardly turns."""
-    pieces = [motion[start : start + frames] for start in range(0, max(len(motion) - frames // 2, 1), frames // 2)]
+def calm(motion: Motion) -> list[Motion]:
+    """Pieces of an idle clip in which the person stays within 35 cm of one place, and hardly turns."""
+    pieces = [motion[start : start + 300] for start in range(0, max(len(motion) - 150, 1), 150)]
     flat = [piece.root[:, [0, 2]] - piece.root[:, [0, 2]].mean(axis=0) for piece in pieces]
-    far = [np.linalg.norm(own, axis=-1).max() > radius for own in flat]
+    far = [np.linalg.norm(own, axis=-1).max() > 0.35 for own in flat]
     return [one for one, away in zip(pieces, far, strict=True) if not away and np.ptp(one.headings) < 0.7]
 
 
@@ -174,15 +173,15 @@ def hanging(motion: Motion) -> bool:
     return bool((wrists[..., 1] - positions[:, :1, 1]).max() < 0.12)
 
 
-def blows_of(motion: Motion, clip: SourceClip, *, most: int = 2) -> list[Take]:
-    """A clip of punches, kicks or sword cuts as takes of 1 to ``most`` blows in a row, with peaks and aim."""
+def blows_of(motion: Motion, clip: SourceClip) -> list[Take]:
+    """A clip of punches, kicks or sword cuts as takes of one blow or two in a row, with peaks and aim."""
     joint, before, after = STRIKES[clip.action]
     sword = clip.action == "slash"  # held with both hands; the right one tells
     takes = []
     for side in ("right",) if sword else ("left", "right"):
         tip = clip.positions[:, SMPL22.index(f"{side}_{joint}")]
         if sword:
-            speed = np.linalg.norm(np.gradient(tip - clip.positions[:, 0], axis=0), axis=-1) * 30
+            speed = np.linalg.norm(np.gradient(tip - clip.positions[:, 0], axis=0), axis=-1) * FPS
             peaks, _ = find_peaks(speed, height=3.0, distance=40)
         elif clip.action == "kick":
             peaks, _ = find_peaks(tip[:, 1], height=0.7, prominence=0.3)
@@ -190,7 +189,7 @@ def blows_of(motion: Motion, clip: SourceClip, *, most: int = 2) -> list[Take]:
             reach = np.linalg.norm(tip - clip.positions[:, SMPL22.index(f"{side}_shoulder")], axis=-1)
             peaks, _ = find_peaks(reach, height=0.42, prominence=0.12)
         for first, last in combinations_with_replacement(range(len(peaks)), 2):
-            if last - first < most:
+            if last - first < 2:
                 start = max(int(peaks[first]) - before, 0)
                 part = motion[start : int(peaks[last]) + after]
                 reach = tip[peaks[first]] - clip.positions[peaks[first], 0]
@@ -208,11 +207,11 @@ QUICKEST = 1.5
 
 def _moments(motion: Motion) -> np.ndarray:
     """(T, F) poses and speeds of a person, by which two moments look alike; the height counts, the place does not."""
-    local = forward_kinematics(motion.rotations, motion.root * UPWARDS)
+    local = forward_kinematics(motion.rotations, motion.root * (1 - FLAT))
     return np.concatenate([local, 4 * np.gradient(local, axis=0)], axis=-1).reshape(len(motion), -1)
 
 
-def shorten(motion: Motion, frames: int, *, blend: int = 10) -> Motion:
+def shorten(motion: Motion, frames: int) -> Motion:
     """About ``frames`` frames: the middle is left out, between two moments that look most alike.
 
     Two moments look most alike where a person stands before and after what the clip shows. A cut that would
@@ -235,7 +234,7 @@ def shorten(motion: Motion, frames: int, *, blend: int = 10) -> Motion:
     _, leave, enter = best
     if not enter:
         return time_warp(motion, min(len(motion) / frames, QUICKEST))
-    return join(motion[: leave + blend // 2], motion[enter - blend // 2 :], blend=blend)
+    return join(motion[: leave + 5], motion[enter - 5 :], blend=10)
 
 
 def feet_together(motion: Motion) -> np.ndarray:
@@ -256,10 +255,7 @@ def extend(motion: Motion, frames: int) -> Motion:
     cost = np.linalg.norm(feature[early][:, None] - feature[late][None], axis=-1)
     enter, leave = np.unravel_index(int(cost.argmin()), cost.shape)
     again = slice(int(early[enter]) - half, int(late[leave]) + half)
-    longer = motion[: again.stop]
-    while len(longer) < frames:
-        longer = join(longer, motion[again], blend=2 * half)
-    return longer
+    return looped(motion[: again.stop], motion[again], frames, blend=2 * half)
 
 
 def stride(rng: np.random.Generator, library: Library, action: str, distance: float, **wanted: Any) -> Take:

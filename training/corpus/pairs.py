@@ -10,17 +10,18 @@ from typing import Any
 
 import numpy as np
 
+from motion import FPS
 from motion.cleaning import foot_contacts, plant_feet
 from motion.skeleton import SMPL22
 from motion.smoothing import eased_marks
 from motion.transforms import canonicalize, facing
-from motion.vectors import Array, unit
+from motion.vectors import FLAT, Array, unit
 
 from .checks import foot_skate
 from .compose import ARMS
 from .contact import settle
 from .cues import STILL, Beat, Scene
-from .kinect import FPS, RELEASES, Pair, fitted, read_release
+from .kinect import RELEASES, Pair, fitted, read_release
 from .sources import kept
 from .telling import describe
 
@@ -94,7 +95,7 @@ def _fault(people: Array, pair: Pair) -> str | None:
     if (lean[..., 1] / np.linalg.norm(lean, axis=-1)).min() < 0.5:
         return "a body leans over by more than 60°"
     if pair.family in _FACING:
-        towards = unit((people[1, :, 0] - people[0, :, 0]) * np.array([1.0, 0.0, 1.0]))
+        towards = unit((people[1, :, 0] - people[0, :, 0]) * FLAT)
         cos = [np.mean(np.sum(facing(people[0]) * towards, -1)), np.mean(np.sum(facing(people[1]) * -towards, -1))]
         if min(cos) < 0.5:
             return "the two do not face each other"
@@ -145,7 +146,7 @@ def _meet(people: Array, apart: float) -> tuple[Array, dict[str, Any]]:
     near = gap < max(gap.min() + _NEAR, apart)
     # Depth noise and assumed proportions misplace people by about a hand's width: move each by half of it.
     one, other = (person[near][:, ARMS[side][3]] for person, side in zip(people, sides, strict=True))
-    lacking = (other - one).mean(axis=0) * np.array([1.0, 0.0, 1.0])
+    lacking = (other - one).mean(axis=0) * FLAT
     shift = lacking * (1 - apart / max(float(np.linalg.norm(lacking)), 1e-6)) / 2
     shift *= min(1.0, 0.15 / max(float(np.linalg.norm(shift)), 1e-9))
     weight = eased_marks(near, 10)

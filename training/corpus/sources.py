@@ -29,7 +29,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation, Slerp
 
-from motion import InputError
+from motion import FPS, InputError
 from motion.cleaning import foot_contacts, plant_feet
 from motion.formats.bvh import read_bvh
 from motion.formats.files import replacing
@@ -47,7 +47,6 @@ Described = tuple[str, str, str | None, str, str]
 """Action, style, side, source and data set of a recording, as in :class:`SourceClip`."""
 logger = logging.getLogger(__name__)
 
-FPS = 30.0
 MAX_FRAMES = 600
 TEST_SHARE = 0.08
 MIN_CLIPS_FOR_TEST = 6
@@ -299,7 +298,7 @@ _JOINTS = _LISTED["deepmimic"]["joints"]
 WIDTH = 1 + 3 + sum(joint["width"] for joint in _JOINTS)
 
 
-def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMotion:
+def read_deepmimic(data: bytes, *, name: str = "") -> RigMotion:
     """Reads one clip; knees and elbows are angles about the axis to the right, the rest quaternions w x y z.
 
     Raises:
@@ -314,7 +313,7 @@ def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMoti
     if not (rows[:-1, 0] > 0).all():
         raise InputError(f"{name} has a frame that lasts no time: give every row its seconds.")
     times = np.concatenate([[0.0], np.cumsum(rows[:-1, 0])])
-    grid = np.minimum(np.arange(0.0, times[-1] + 1e-6, 1 / fps), times[-1])
+    grid = np.minimum(np.arange(0.0, times[-1] + 1e-6, 1 / FPS), times[-1])
     root = np.stack([np.interp(grid, times, rows[:, column]) for column in (1, 2, 3)], axis=-1)
     names, parents, offsets, widths = (tuple(j[key] for j in _JOINTS) for key in ("name", "parent", "offset", "width"))
     rotations = np.tile(np.eye(3), (len(grid), len(names), 1, 1))
@@ -325,4 +324,4 @@ def read_deepmimic(data: bytes, *, name: str = "", fps: float = 30.0) -> RigMoti
             rotations[:, joint] = Slerp(times, turn)(grid).as_matrix()
     body = Skeleton("deepmimic", names, parents, np.array(offsets))
     places = forward_kinematics(rotations, root, body)
-    return RigMotion(names, parents, body.offsets, places, fps, name=name, up="y")
+    return RigMotion(names, parents, body.offsets, places, FPS, name=name, up="y")

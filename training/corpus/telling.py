@@ -8,15 +8,12 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-import numpy as np
-
 from acts import Act
 from motion.metrics.sentences import kept_out
 
 from .cues import STILL, WORDS, Label, Scene, entry, label
-from .phrasing import Cast, Names, draw_cast, fitting, held_out, spoken
+from .phrasing import Cast, Names, Rng, draw_cast, fitting, held_out, spoken
 
-Rng = np.random.Generator
 JOINT, ALONE, ONE_BEAT = 8, 3, 2
 """Numbers of captions of a scene, of each single person, and of each beat."""
 LONGEST = 320

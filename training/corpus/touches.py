@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from motion.skeleton import SMPL22
+from motion import FPS
+from motion.skeleton import OTHER_SIDE, SMPL22
 from motion.vectors import FLAT, unit
 
-from .compose import ARMS, OTHER, Array
+from .compose import ARMS, Array
 from .contact import (
     ELBOW_DOWN,
     UP,
@@ -163,7 +164,7 @@ def elbow_bump(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -
 
 def hand_over(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touched:
     """A hands something to B."""
-    taking = side if rng.random() < 0.7 else OTHER[side]
+    taking = side if rng.random() < 0.7 else OTHER_SIDE[side]
     frames = len(a)
     offered = start + int(rng.integers(16, 24))
     grasp = offered + int(rng.integers(4, 16))
@@ -195,7 +196,7 @@ def hug(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touch
         way = towards(body[:, 0], other[:, 0]) + 0.35 * sign * axes(body)[0]
         leant.append(lean_to(body, way, weight * rng.uniform(0.08, 0.16)))
     # On the side where a's arm goes over, b's goes under it: one's right hand comes to the other's left.
-    under, solved = OTHER[side], []
+    under, solved = OTHER_SIDE[side], []
     for body, other, weight in zip(leant, leant[::-1], weights, strict=True):
         high = on_body(other, "spine3", 0.13 * sign, rng.uniform(0.06, 0.14), -rng.uniform(0.05, 0.1))
         low = on_body(other, "spine2", -0.15 * sign, rng.uniform(0.0, 0.06), -rng.uniform(0.02, 0.07))
@@ -207,7 +208,7 @@ def hug(rng: Rng, a: Array, b: Array, start: int, stop: int, side: str) -> Touch
 
 def pats(rng: Rng, frames: int, arrive: int, leave: int) -> Array:
     """(frames,) metres by which a patting hand is lifted off."""
-    time = (np.arange(frames) - arrive) / 30
+    time = (np.arange(frames) - arrive) / FPS
     inside = envelope(frames, arrive, arrive + 4, max(leave - 6, arrive + 5), max(leave, arrive + 9))
     return rng.uniform(0.05, 0.1) * inside * (0.5 - 0.5 * np.cos(2 * np.pi * rng.uniform(2.2, 3.2) * time))
 
@@ -232,7 +233,7 @@ class HandOn:
         """The touch of two people (T, 22, 3) from one frame to another, with the hand of a side."""
         arrive, leave, end = timing(rng, start, stop)
         weight = envelope(len(a), start, arrive, leave, end)
-        joint, (out, up, ahead) = self.joint.format(side=side, far=OTHER[side]), self.at
+        joint, (out, up, ahead) = self.joint.format(side=side, far=OTHER_SIDE[side]), self.at
         if self.lifted:
             lift = pats(rng, len(a), arrive, leave)
             up, ahead = up + lift * self.lifted[0], ahead + lift * self.lifted[1]

@@ -18,7 +18,7 @@ import numpy as np
 import torch
 
 from models.motion_tokens import decode
-from motion import Duet, InputError
+from motion import FPS, Duet, InputError
 from motion.metrics.generation import (
     diversity,
     frechet_distance,
@@ -62,7 +62,7 @@ def real_duet(scenes: Scenes, row: dict[str, Any]) -> Duet:
     """The recorded scene, decoded from its control points: as smooth as what a network can give."""
     with torch.no_grad():
         positions = decode(scenes.scene(row), scenes.layout)[0].numpy()
-    return Duet.from_positions(positions, fps=30.0)
+    return Duet.from_positions(positions, fps=FPS)
 
 
 class Features:

@@ -14,8 +14,9 @@ from itertools import pairwise
 import numpy as np
 import torch
 import torch.nn.functional as F
+from scipy.spatial.distance import pdist
 from torch import Tensor, nn
-from torch.nn.utils.rnn import pack_padded_sequence, pad_packed_sequence
+from torch.nn.utils.rnn import pack_padded_sequence, pad_packed_sequence, pad_sequence
 
 from motion.metrics.generation import frechet_distance
 from motion.vectors import Array
@@ -60,11 +61,8 @@ class DeepGRU(nn.Module):
 
 def padded(clips: Sequence[Array]) -> tuple[Tensor, Tensor]:
     """(B, T, F) float32 and lengths (B,) of clips (T_i, F)."""
-    lengths = torch.tensor([len(clip) for clip in clips])
-    batch = torch.zeros(len(clips), int(lengths.max()), clips[0].shape[1])
-    for row, clip in zip(batch, clips, strict=True):
-        row[: len(clip)] = torch.from_numpy(np.asarray(clip, dtype=np.float32))
-    return batch, lengths
+    tensors = [torch.from_numpy(np.asarray(clip, dtype=np.float32)) for clip in clips]
+    return pad_sequence(tensors, batch_first=True), torch.tensor([len(clip) for clip in clips])
 
 
 def fit(clips: Sequence[Array], labels: Sequence[int], *, seed: int, epochs: int = 80, batch: int = 32) -> DeepGRU:
@@ -102,8 +100,7 @@ def accuracy(network: DeepGRU, clips: Sequence[Array], labels: Sequence[int]) ->
 
 def spread(features: Array) -> float:
     """Mean distance of all pairs of deep features (N, D)."""
-    gaps = np.linalg.norm(features[:, None] - features[None], axis=-1)
-    return float(gaps[np.triu_indices(len(gaps), 1)].mean())
+    return float(pdist(features).mean())
 
 
 def deep_features(network: DeepGRU, clips: Sequence[Array]) -> Array:

@@ -86,10 +86,7 @@ class Extractor(nn.Module):
 
         What does not fill a token at the end is left out.
         """
-        frames = positions.shape[1]
-        tokens = self.layout.num_tokens(frames)
-        if self.layout.num_frames(tokens) > frames:
-            tokens -= 1
+        tokens = self.layout.filled_tokens(positions.shape[1])
         positions = positions[:, : self.layout.num_frames(tokens)].float()
         control = (encode(positions, foot_contacts(positions), self.layout) - self.mean) / self.std
         return self.motion(pack(control[None], self.layout), torch.ones(1, tokens, dtype=torch.bool))[0]

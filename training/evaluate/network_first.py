@@ -27,14 +27,16 @@ from acts.staging import given as staging
 from acts.staging.poses import JOINT
 from acts.staging.window import KnownPath, Part
 from motion import Duet
+from motion.formats.files import write_text
+from training.core.shell import exit_code
 from webdemo.inference.pipelines import scene
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.run import Result
 from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.request import SceneRequest
 
-POSES = frozenset(("gesture", "limb", "figure", "touch", "posture", "jump", "bow", "hold", "pull", "lift", "strike"))
-"""Shapes that give poses."""
+PLACES = frozenset(("go", "turn", "stay", "place", "link", "words"))
+"""Shapes that give no poses."""
 SEEDS, WANTED, WORDINGS = 4, 3, 3
 """Seeds of a wording, those of them that have to show the act, and wordings that are tried."""
 SECONDS = (3.0, 6.0)
@@ -68,8 +70,8 @@ class Made:
 
 
 def gives_poses(shape: Shape) -> bool:
-    """True for a shape that gives poses; the others give places."""
-    return shape.do in POSES or bool(getattr(shape, "gait", ""))
+    """True for a shape that gives poses; the others give places, or nothing."""
+    return shape.do not in PLACES or bool(getattr(shape, "gait", ""))
 
 
 def places_of(parts: Sequence[Part]) -> list[Part]:
@@ -142,14 +144,18 @@ def table(made: Sequence[Made]) -> str:
     return "\n".join(lines) + f"\n\nThe network's: {names or 'none'}.\n"
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Prints the table of acts."""
-    from webdemo.inference.engine import Engine
-
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="+", default=[], metavar="ACT", help="only these acts")
     parser.add_argument("--out", type=Path, help="JSON file for all acts")
-    options = parser.parse_args(arguments)
+    options = parser.parse_args(argv)
+    return exit_code(lambda: _run(options))
+
+
+def _run(options: argparse.Namespace) -> None:
+    from webdemo.inference.engine import Engine
+
     engine = Engine()
     pipeline: Any = engine.pipeline("intergen")
     guided = pipeline.model.denoiser.guided
@@ -176,8 +182,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             print(f"{name}: {'zeros' if each.zeros else f'{each.done} of {each.tried}'} ({each.words})", flush=True)
     print(table(made))
     if options.out is not None:
-        options.out.write_text(json.dumps([asdict(each) for each in made], indent=1) + "\n", encoding="utf-8")
+        write_text(options.out, json.dumps([asdict(each) for each in made], indent=1) + "\n")
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

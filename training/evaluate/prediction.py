@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from motion import FPS
 from motion.cleaning import foot_contacts
 from motion.formats.files import write_text
 from motion.skeleton import FEET
@@ -25,8 +26,7 @@ from webdemo.inference.requests.predict import mean_steps
 Predict = Callable[[Array], Array]
 """(N, past, J, 3) metres → (N, future, J, 3)."""
 
-FPS = 30
-PAST, FUTURE = FPS, 4 * FPS
+PAST, FUTURE = 30, 120
 TRUTH = "what really followed"
 AHEAD = (2, 5, 10, 15, 30, 60, 90, 120)
 """Predicted frames that are scored."""

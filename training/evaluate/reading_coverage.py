@@ -18,6 +18,9 @@ from typing import Any
 
 from acts import read
 from acts.reading.syntax import parse
+from motion import InputError
+from motion.formats.files import write_text
+from training.core.shell import exit_code
 
 SAMPLE = 2000
 """Captions that are read."""
@@ -27,7 +30,13 @@ _CONTENT = frozenset(("NOUN", "PROPN", "VERB", "ADV", "ADJ", "NUM"))
 def sampled(file: Path, count: int = SAMPLE) -> list[str]:
     """Captions of a file, drawn with a fixed seed."""
     packed = {".xz": lzma.decompress, ".gz": gzip.decompress}.get(file.suffix, bytes)
-    captions = sorted({line.strip() for line in packed(file.read_bytes()).decode().splitlines()} - {""})
+    try:
+        text = packed(file.read_bytes()).decode()
+    except (OSError, EOFError, ValueError, lzma.LZMAError) as error:
+        raise InputError(
+            f"{file} holds no captions ({error}): give a text file, plain or packed (.xz, .gz)."
+        ) from error
+    captions = sorted({line.strip() for line in text.splitlines()} - {""})
     return random.Random(0).sample(captions, min(count, len(captions)))
 
 
@@ -62,19 +71,23 @@ def coverage(captions: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """The command."""
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Counts what of people's captions the reader understands.")
     parser.add_argument("file", type=Path, help="captions, one a line")
     parser.add_argument("--out", type=Path, help="JSON file for each caption with its acts")
-    args = parser.parse_args(argv)
-    result = coverage(sampled(args.file))
-    if args.out:
-        args.out.write_text(json.dumps(result, indent=1))
-    words = ", ".join(f"{word} {count}" for word, count in list(result["left"].items())[:60])
-    print(f"read whole {result['whole']:.1%}, two parses disagree {result['doubtful']:.1%}, ", end="")
-    print(f"{result['milliseconds']:.0f} ms a caption\nwords left over: {words}")
+    options = parser.parse_args(argv)
+
+    def job() -> None:
+        result = coverage(sampled(options.file))
+        if options.out:
+            write_text(options.out, json.dumps(result, indent=1))
+        words = ", ".join(f"{word} {count}" for word, count in list(result["left"].items())[:60])
+        print(f"read whole {result['whole']:.1%}, two parses disagree {result['doubtful']:.1%}, ", end="")
+        print(f"{result['milliseconds']:.0f} ms a caption\nwords left over: {words}")
+
+    return exit_code(job)
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

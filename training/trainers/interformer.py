@@ -28,11 +28,12 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from models.interformer.compact import FPS, JOINTS_15, CompactInterFormer, CompactInterFormerConfig
+from models.interformer.compact import FPS as NETWORK_FPS
+from models.interformer.compact import JOINTS_15, CompactInterFormer, CompactInterFormerConfig
 from models.interformer.network import JOINTS
 from models.intergen.losses import masked_mean
 from models.weights_io import common
-from motion import InputError
+from motion import FPS, InputError
 from motion.skeleton import SBU15
 from motion.transforms import canonicalize, mirrored, resample, turn
 from motion.vectors import Array
@@ -41,7 +42,6 @@ from training.core.shell import train
 from training.corpus.pairs import load_pairs
 from training.trainers.regennet import distance_loss
 
-RECORDED_FPS = 30.0
 SHORTEST = 9
 """Fewest frames of a training window."""
 _IMPORTANCE = {"wrist": 2.0, "elbow": 1.5, "foot": 1.5}
@@ -104,8 +104,8 @@ def varied(people: Array, settings: Settings, rng: np.random.Generator) -> Array
     latest = people.shape[1] - 2 * SHORTEST
     if latest > 1 and rng.random() < settings.crop:
         first = int(rng.integers(1, latest))
-    fps = FPS / (1 + settings.speed * rng.uniform(-1, 1))
-    people = np.stack([resample(person[first:], RECORDED_FPS, fps) for person in people])[:, : settings.window]
+    fps = NETWORK_FPS / (1 + settings.speed * rng.uniform(-1, 1))
+    people = np.stack([resample(person[first:], FPS, fps) for person in people])[:, : settings.window]
     people = canonicalize(people) * (1 + settings.size * rng.uniform(-1, 1))
     return turn(people, math.radians(settings.turn) * rng.uniform(-1, 1))
 

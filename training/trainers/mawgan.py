@@ -28,7 +28,7 @@ from models.mawgan.losses import (
 from models.mawgan.network import Critic, MAWGANConfig, PredictiveMAWGAN, to_curves, to_positions
 from models.mawgan.srvf import exp_map, karcher_mean, log_map, to_srvf
 from models.weights_io import common
-from motion import InputError
+from motion import SMPL22, InputError
 from training.core.shell import at_least
 from training.trainers.prediction import PredictionTrainer, train
 
@@ -97,7 +97,7 @@ class Trainer(PredictionTrainer):
     def network(self) -> nn.Module:
         """The predictor as a run begins, with the means of the training data; makes the critic, too."""
         s = self.settings
-        config = s.network(self.windows.joints)
+        config = s.network(SMPL22.num_joints)
         model, self.critic = PredictiveMAWGAN(config).to(self.device), Critic(config).to(self.device)
         self.critic_optimizer = self.optimizer_of(self.critic)
         if not self.checkpoint.exists():
@@ -176,7 +176,7 @@ class Trainer(PredictionTrainer):
         terms = {
             "reconstruction": weights.reconstruction * reconstruction_loss(made, real),
             "skeleton": weights.skeleton * skeleton_loss(positions, truth),
-            "bone": weights.bone * bone_loss(positions, truth, self.windows.bones),
+            "bone": weights.bone * bone_loss(positions, truth, list(SMPL22.bones)),
             "position": weights.position * position_loss(positions, truth),
         }
         if weights.adversarial:

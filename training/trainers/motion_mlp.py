@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
+from models.intergen.losses import bone_lengths
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.weights_io import common
 from training.core.shell import at_least
@@ -80,11 +81,9 @@ class Trainer(PredictionTrainer):
     def network(self) -> nn.Module:
         """The network as a run begins, its linear part fitted."""
         s = self.settings
-        model = MotionMLP(MotionMLPConfig(self.windows.joints, **common(s, MotionMLPConfig))).to(self.device)
+        model = MotionMLP(MotionMLPConfig(**common(s, MotionMLPConfig))).to(self.device)
         if not self.checkpoint.exists():
             model.fit_linear(self.windows.batch(s.fit, (s.seed, 0, 1)).to(self.device))
-        parents, children = zip(*self.windows.bones, strict=True)
-        self.bones = list(parents), list(children)
         return model
 
     def terms(self, window: Tensor) -> dict[str, Tensor]:
@@ -95,8 +94,7 @@ class Trainer(PredictionTrainer):
         predicted, before = 100 * self.model(past + s.noise * noise), 100 * past[:, -1:]
         truth = 100 * truth
         made, real = (torch.cat([before, motion], dim=1).diff(dim=1) for motion in (predicted, truth))
-        parents, children = self.bones
-        bones = [lengths(x[..., children, :] - x[..., parents, :]) for x in (predicted, truth)]
+        bones = [bone_lengths(x) for x in (predicted, truth)]
         return {
             "position": lengths(predicted - truth).mean(),
             "velocity": s.velocity_weight * lengths(made - real).mean(),

@@ -14,7 +14,7 @@ import torch
 from torch import Tensor, nn
 
 from models.weights_io import save_network
-from motion import SMPL22, InputError
+from motion import FPS, SMPL22, InputError
 from motion.transforms import mirrored
 from motion.vectors import Array
 from training.core import shell
@@ -32,21 +32,12 @@ class Windows:
         future: frames that follow.
         split: only scenes of this split are seen.
 
-    Attributes:
-        bones: (parent, child) places among the joints.
-        joints: how many.
-        fps: frames a second.
-
     Raises:
         InputError: if the folder is no such corpus.
     """
 
-    fps = 30.0
-    joints = 22
-
     def __init__(self, folder: Path, past: int = 30, future: int = 30, *, split: str = "train") -> None:
         self.past, self.future, self.length = past, future, past + future
-        self.bones = [(int(a), int(b)) for a, b in SMPL22.bones]
         self.motions, rows = load_corpus(folder)
         kept = [row for row in rows if row["split"] == split and row["frames"] >= self.length]
         if not kept:
@@ -100,8 +91,7 @@ class PredictionTrainer(Loop):
     def export(self, folder: Path) -> None:
         """Writes the averaged network as a predictor's folder."""
         training = {**asdict(self.settings), "steps": self.step}
-        windows = self.windows
-        save_network(folder, self.ema, kind=self.kind, fps=windows.fps, bones=windows.bones, training=training)
+        save_network(folder, self.ema, kind=self.kind, fps=FPS, bones=SMPL22.bones, training=training)
 
 
 def train(

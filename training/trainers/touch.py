@@ -18,6 +18,7 @@ from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
 from models.released import Released
 from models.text import TextConditioner
+from motion.skeleton import OTHER_SIDE
 from training.core.handedness import mirror_caption, mirrored
 from training.core.loop import fit, mixed_precision
 from training.core.text_features import encoded
@@ -28,7 +29,6 @@ Network = TypeVar("Network", CompactInterGen, CompactReGenNet)
 RARE = 8
 MOST, STEPS = 24_000, 3000
 """Captions that a reader is fitted on and scored on, at most, and its steps of AdamW in batches of 256."""
-_SWAP = {"left": "right", "right": "left"}
 
 
 def touch_of(row: dict[str, Any], *, mirror: bool = False, beat: dict[str, Any] | None = None) -> Touch:
@@ -42,7 +42,7 @@ def touch_of(row: dict[str, Any], *, mirror: bool = False, beat: dict[str, Any] 
 
 def _mirror(joint: str) -> str:
     side, _, part = joint.partition("_")
-    return f"{_SWAP[side]}_{part}" if side in _SWAP else joint
+    return f"{OTHER_SIDE[side]}_{part}" if side in OTHER_SIDE else joint
 
 
 def examples(rows: list[dict[str, Any]]) -> list[tuple[str, Touch]]:

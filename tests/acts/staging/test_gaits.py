@@ -18,7 +18,8 @@ from motion.metrics.sentences.language import check
 from motion.metrics.sentences.poses import low
 from motion.vectors import Array
 from tests.inference.followed import Follower
-from tests.inference.test_scenes import positions
+from tests.inference.runs import positions
+from tests.motion.bodies import bone_lengths
 from webdemo.inference.story import Beat, SceneRequest
 
 from .staged_words import score
@@ -46,9 +47,7 @@ def standing(poses: Array) -> Array:
 @pytest.mark.parametrize("gait", GAITS)
 def test_each_gait_of_the_lexicon_keeps_the_bones_and_its_way(gait: str) -> None:
     poses = gone(gait)
-    parents, children = np.array(SMPL22.bones).T
-    lengths = np.linalg.norm(poses[:, children] - poses[:, parents], axis=-1)
-    np.testing.assert_allclose(lengths, np.tile(SMPL22.bone_lengths[children], (FRAMES, 1)), atol=0.01)
+    np.testing.assert_allclose(bone_lengths(poses) - SMPL22.bone_lengths[1:], 0, atol=0.01)
     np.testing.assert_allclose(poses[:, 0, 2], np.linspace(0.0, 2.5, FRAMES), atol=1e-9)
     assert poses[..., 1].min() > -0.01 and poses[..., 1].min(axis=1).max() < (0.2 if gait == "skips" else 0.03)
 

@@ -9,8 +9,8 @@ from pydantic import ValidationError
 from acts import shapes
 from acts.staging.gestures import GESTURES, hands_of, wrist
 from acts.staging.poses import upright
-from acts.staging.score import SIDES
 from motion import SMPL22
+from motion.skeleton import SIDES
 
 from .staged_words import score
 

@@ -21,13 +21,18 @@ def poses_of(words: str) -> list[KnownFrames]:
     """The poses that the only window of a sentence is given."""
     story = Story(scores_of([read(words).acts]), [SECONDS], [0, FRAMES], seed=0)
     placement = Placement(np.eye(3), np.zeros(3), np.zeros(3))
-    parts = plan_parts(story, Window(0, 0, 0, FRAMES), np.zeros((2, FRAMES, 22, 3)), placement)
+    parts = plan_parts(story, Window(0, 0, 0, FRAMES), np.zeros((2, FRAMES, 22, 3)), placement, ())
     return [part for part in parts if isinstance(part, KnownFrames)]
 
 
 def test_jumps_are_held_and_postures_are_drafts() -> None:
     assert {part.soft for part in poses_of("A jumps.") if part.person == 0} == {False}
     assert {part.soft for part in poses_of("A kneels.") if part.person == 0} == {True}
+
+
+def test_who_keeps_their_back_to_the_other_does_a_figure_where_they_stand() -> None:
+    (body,) = (part for part in poses_of("A keeps his back to B and does a push-up.") if part.person == 0)
+    assert set(body.joints) == set(ALL) and np.asarray(body.positions)[:, 0, 1].min() < 0.5
 
 
 @pytest.mark.parametrize(

@@ -11,20 +11,20 @@ from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.poses import kneels, lies, low, sits
 from motion.metrics.sentences.poses import upright as is_upright
 from motion.transforms import heading
+from tests.motion.bodies import bone_lengths
 
 PLACE = np.array([1.0, -2.0])
 TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
 
 
-def bones(pose: np.ndarray) -> np.ndarray:
-    parents, children = np.array(SMPL22.bones).T
-    return np.linalg.norm(pose[children] - pose[parents], axis=-1) / SMPL22.bone_lengths[children]
+def bent(place: np.ndarray, angle: float) -> np.ndarray:
+    return bending(place, angle, 0.9)
 
 
-@pytest.mark.parametrize("make", [upright, seated, grounded, bending, stooping, crouching, kneeling, lying])
+@pytest.mark.parametrize("make", [upright, seated, grounded, bent, stooping, crouching, kneeling, lying])
 def test_poses_are_of_this_body_and_on_the_floor(make) -> None:
     pose = make(PLACE, 0.7)
-    np.testing.assert_allclose(bones(pose), 1.0, atol=1e-9)
+    np.testing.assert_allclose(bone_lengths(pose), SMPL22.bone_lengths[1:], atol=1e-9)
     assert 0.0 <= pose[:, 1].min() < 0.1
     assert abs(float(heading(pose[None])[0]) - 0.7) < 0.05
 
@@ -40,8 +40,7 @@ def test_poses_are_what_they_are_called(make, rule) -> None:
 
 def test_feet_stay_where_they_stood() -> None:
     feet = [
-        make(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]]
-        for make in (upright, seated, grounded, bending, stooping, crouching)
+        make(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] for make in (upright, seated, grounded, bent, stooping, crouching)
     ]
     assert np.ptp(feet, axis=0).max() < 1e-6
     assert np.linalg.norm(lying(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] - feet[0]) < 0.35
@@ -53,11 +52,11 @@ def test_who_sits_on_the_ground_is_at_its_level() -> None:
 
 
 def test_who_bends_down_keeps_straight_legs_and_lowers_the_head_forward() -> None:
-    straight, bent = upright(np.zeros(2), 0.0), bending(np.zeros(2), 0.0)
+    straight, leant = upright(np.zeros(2), 0.0), bent(np.zeros(2), 0.0)
     head = SMPL22.index("head")
-    assert bent[head, 1] < straight[head, 1] - 0.2 and bent[head, 2] > straight[head, 2] + 0.4
-    assert np.array_equal(bent[list(LOWER)][:3], straight[list(LOWER)][:3])
-    assert np.array_equal(bent[TOES], straight[TOES])
+    assert leant[head, 1] < straight[head, 1] - 0.2 and leant[head, 2] > straight[head, 2] + 0.4
+    assert np.array_equal(leant[list(LOWER)][:3], straight[list(LOWER)][:3])
+    assert np.array_equal(leant[TOES], straight[TOES])
 
 
 def test_who_bends_down_has_the_hands_near_the_floor() -> None:

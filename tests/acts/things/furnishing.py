@@ -47,7 +47,7 @@ def sitting() -> np.ndarray:
 
 def things_of(people: np.ndarray, *acts: Act, sentence: str = "") -> tuple[Thing, ...]:
     duet = Duet.from_positions(people.astype(np.float32), fps=FPS)
-    result = furnish(duet, [(Plan(sentence=sentence, acts=acts), 0, None, None)])
+    result = furnish(duet, [(Plan(sentence=sentence, acts=acts), 0, None, None)], ())
     np.testing.assert_array_equal(result.positions, duet.positions, "the people are moved")
     rows = (result.manifest or {}).get("things", [])
     assert [row["kind"] for row in rows] == [thing.kind for thing in result.things]

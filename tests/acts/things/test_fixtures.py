@@ -39,7 +39,7 @@ def reach(people: np.ndarray, first: int, who: int = 0) -> None:
 def furnished(sentence: str, people: np.ndarray | None = None) -> tuple[dict[str, list[Thing]], Duet]:
     people = apart() if people is None else people
     duet = Duet.from_positions(people.astype(np.float32), fps=FPS)
-    result = furnish(duet, [(read(sentence), 0, None, None)])
+    result = furnish(duet, [(read(sentence), 0, None, None)], ())
     kinds: dict[str, list[Thing]] = {}
     for thing in result.things:
         kinds.setdefault(thing.kind, []).append(thing)

@@ -188,5 +188,5 @@ def test_a_beat_has_its_own_frames():
     people = reaching()
     duet = Duet.from_positions(people.astype(np.float32), fps=FPS)
     plan = Plan(acts=(act("hand-over", patient="b", thing="flower"),))
-    late = furnish(duet, [(plan, 90, 120, 2)])
+    late = furnish(duet, [(plan, 90, 120, 2)], ())
     assert late.manifest["things"][0]["events"][0]["at"] != pytest.approx(2.0, abs=0.1)

@@ -16,7 +16,7 @@ from .furnishing import FPS, FRAMES, GAP, act, put_hand, reaching, standing, wor
 def grips(people: np.ndarray, *acts: Act, sentence: str = "") -> tuple[Grip, ...]:
     duet = Duet.from_positions(people.astype(np.float32), fps=FPS)
     plans = [(Plan(sentence=sentence, acts=acts), 0, None, None)] if acts else []
-    return furnish(duet, plans).grips
+    return furnish(duet, plans, ()).grips
 
 
 def shapes_at(found: tuple[Grip, ...], person: int, side: str, frame: int) -> list[str]:

@@ -11,7 +11,7 @@ import pytest
 from motion import SMPL22, Duet
 from motion.looks import SIZES, UNSAID
 from motion.sizes import floor_scale
-from tests.inference.test_scenes import run
+from tests.inference.runs import run
 from webdemo.inference import Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.finish.looks import enlarged, furnished
 from webdemo.inference.requests.paths import FloorPath, FloorPoint

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from acts.staging.gestures import wrist
-from acts.staging.score import SIDES
+from acts.staging.poses import HANDS
 from motion import SMPL22
+from motion.skeleton import SIDES
 from motion.transforms import heading_matrix
 from motion.video.following import HIDDEN
+from tests.motion.bodies import bone_lengths
 from webdemo.inference.live.agent import BESIDE, LiveAgent
 from webdemo.inference.live.room import BRIGHT, COLD, FRAMES, HOT, LOUD, PLACES, SMELLS, STANDS, Complaint, complaint
 
@@ -121,14 +123,7 @@ def test_the_agent_goes_to_the_thing_uses_it_and_comes_back(seen: np.ndarray, sa
     hands = poses[:, [J("left_wrist"), J("right_wrist")]]
     front = np.linalg.norm((hands - body.places[0])[..., [0, 2]], axis=-1).min()
     assert front < 0.42, "a hand is at it"
-    parents, children = map(list, zip(*SMPL22.bones, strict=True))
-    bones = np.linalg.norm(poses[:, children] - poses[:, parents], axis=-1)
-    arms = [
-        i
-        for i, child in enumerate(children)
-        if "elbow" in SMPL22.joint_names[child] or "wrist" in SMPL22.joint_names[child]
-    ]
-    assert np.ptp(bones[:, arms], axis=0).max() < 1e-6
+    assert np.ptp(bone_lengths(poses)[:, [joint - 1 for joint in HANDS]], axis=0).max() < 1e-6
     back = np.linalg.norm((poses[-1, 0] - STANDING[0])[[0, 2]])
     assert back <= BESIDE + 0.05, "it is with the person again"
     jumps = np.linalg.norm(np.diff(hands, axis=0), axis=-1)

@@ -9,6 +9,7 @@ from motion import SMPL22, Clip, Duet
 from motion.metrics.quality import DEEP, jerk_percentile, limb_depth, standing_foot
 from motion.touch.apart import CLEAR, bodies_apart, out_of_the_way
 from motion.transforms import heading_matrix
+from tests.motion.bodies import bone_lengths
 from webdemo.inference import ReactRequest, Result
 from webdemo.inference.finish.cleanup import standing_clear
 
@@ -39,9 +40,7 @@ def test_bodies_and_feet_move_apart_on_bones_as_long_as_before(gap: float, aside
     found = bodies_apart(pair, 30.0)
     assert _deepest(pair) > 2 * DEEP
     assert _deepest(found) < DEEP
-    parents, children = (list(ends) for ends in zip(*SMPL22.bones, strict=True))
-    lengths = [np.linalg.norm(x[:, :, children] - x[:, :, parents], axis=-1) for x in (pair, found)]
-    np.testing.assert_allclose(lengths[1], lengths[0], atol=2e-3)
+    np.testing.assert_allclose(bone_lengths(found), bone_lengths(pair), atol=2e-3)
 
 
 def test_feet_that_stand_do_not_slide_when_the_other_comes_for_a_while() -> None:

@@ -9,6 +9,7 @@ from motion import SMPL22
 from motion.metrics.quality import DEEP, jerk_percentile, limb_depth
 from motion.touch.arms import arms_apart, embraced
 from motion.transforms import heading_matrix
+from tests.motion.bodies import bone_lengths
 
 J = SMPL22.index
 FRAMES = 120
@@ -47,9 +48,7 @@ def test_feet_and_bones_stay_and_nothing_jolts() -> None:
     found = embraced(pair)
     feet = [J(f"{side}_{joint}") for side in ("left", "right") for joint in ("ankle", "foot")]
     np.testing.assert_allclose(found[:, :, feet], pair[:, :, feet], atol=0.01)
-    parents, children = (list(ends) for ends in zip(*SMPL22.bones, strict=True))
-    lengths = [np.linalg.norm(x[:, :, children] - x[:, :, parents], axis=-1) for x in (pair, found)]
-    np.testing.assert_allclose(lengths[1], lengths[0], atol=0.02)
+    np.testing.assert_allclose(bone_lengths(found), bone_lengths(pair), atol=0.02)
     assert jerk_percentile(found[0], 30) < jerk_percentile(pair[0], 30) + 40
 
 

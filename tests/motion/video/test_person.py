@@ -9,13 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion import SMPL22, Duet, InputError
+from motion import Duet, InputError
 from motion.cleaning import foot_contacts
 from motion.metrics.quality import foot_skate
 from motion.transforms import resample
 from motion.video import Landmarks, person_of
 from motion.video.landmarks import INDEX
 from motion.video.place import focal_length, translation
+from tests.motion.bodies import bone_lengths
 
 from .filming import film, stepping
 
@@ -35,10 +36,7 @@ def test_pose_tilt_and_bones_come_back_from_any_camera(tilt: float, turned: floa
     person = filmed.person
     assert misplaced(person.positions, resample(true, 15.0, 30.0)) < 0.06
     assert filmed.tilt == pytest.approx(tilt, abs=4.0)
-    lengths = np.linalg.norm(
-        person.positions[:, [c for _, c in SMPL22.bones]] - person.positions[:, [p for p, _ in SMPL22.bones]], axis=-1
-    )
-    assert np.ptp(lengths, axis=0).max() < 1e-3
+    assert np.ptp(bone_lengths(person.positions), axis=0).max() < 1e-3
     assert abs(person.positions[:, :, 1].min()) < 0.05
     assert foot_contacts(person.positions, 30.0).mean() > 0.9 and foot_skate(Duet(person, person)) < 3.0  # cm/s
 

@@ -5,61 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from motion.skeleton import SMPL22
-from tests.training.corpus.test_compose import bone_error, clips, walk
+from tests.training.corpus.recorded import SOURCES, J, bone_error, main, path, staged
 from training.corpus import checks
 from training.corpus.beats import script
-from training.corpus.beats.play import Play
-from training.corpus.cues import STILL, Scene, SourceClip
+from training.corpus.cues import STILL
 from training.corpus.library import Library
-
-J = SMPL22.index
-
-
-def more(split: str) -> list[SourceClip]:
-    """Walks backwards and to the sides, which the small library lacks."""
-
-    def clip(positions: np.ndarray, action: str, side: str | None = None) -> SourceClip:
-        return SourceClip(positions, action, "normal", side, f"{split}-{action}", "made-up", split)
-
-    back = walk(150, speed=-0.7)
-    aside = walk(150, speed=0.0)
-    left = aside + 0.6 * np.arange(150)[:, None, None] / 30 * np.array([1.0, 0, 0])
-    return [
-        clip(back, "walk-back"),
-        clip(left, "walk-left", "left"),
-        clip(left * np.array([-1.0, 1, 1]), "walk-right", "right"),
-    ]
 
 
 @pytest.fixture(scope="module")
 def library() -> Library:
-    return Library([*clips(), *clips("test"), *more("train"), *more("test")], "train")
-
-
-def staged(library: Library, *beats: tuple[str, str, str], heading: float = 0.0) -> Scene:
-    """A scene of beats of the menu that a begins, with what a and b are to do in each; the first seed that does it.
-
-    b stands 2.6 m before the place where a stands with a ``heading`` (0: towards b).
-    """
-    for seed in range(200):
-        rng = np.random.default_rng(seed)
-        play = Play(rng, library, (((0.0, 0.0), heading), ((0.0, 2.6), np.pi)))
-        for name, *_ in beats:
-            script.MENU[name].make(play, 0)
-        acts = [beat.acts for beat in play.beats if not beat.minor]
-        if acts == [tuple(acts) for _, *acts in beats] and play.sync() < script.MOST:
-            return script.as_scene(rng, play)
-    raise AssertionError(f"{beats} never fit")
-
-
-def main(scene: Scene) -> list[dict]:
-    return [beat for beat in scene.beats if not beat["minor"]]
-
-
-def path(scene: Scene, person: int, beat: dict) -> np.ndarray:
-    """(frames, 2) of the root over the ground in a beat."""
-    return scene.positions[person, beat["start"] : beat["end"], 0][:, [0, 2]]
+    return Library(SOURCES, "train")
 
 
 def test_free_scenes_are_sound(library: Library) -> None:

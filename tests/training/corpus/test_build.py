@@ -11,16 +11,13 @@ import pytest
 
 from acts.reading import read
 from models.motion_tokens import TokenLayout
-from tests.training.corpus.test_beats import more
-from tests.training.corpus.test_compose import clips
+from tests.training.corpus.recorded import SOURCES
 from training.corpus import __main__ as command
 from training.corpus import build
 from training.corpus.cues import Label, class_of
 from training.corpus.library import Library
 from training.prepare import prepare
 from training.trainers.bigraphdiff import labels_of, of_classes
-
-SOURCES = [clip for split in ("train", "test") for clip in (*clips(split), *more(split))]
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 
 from acts import Act, read
 from acts.captions import singular
-from training.corpus.beats.acts import ACTS
-from training.corpus.beats.script import ANSWERS
-from training.corpus.cues import STILL, Beat, Label, label, steps
+from tests.training.corpus.recorded import KINDS
+from training.corpus.cues import Beat, Label, label, steps
 from training.corpus.phrasing import OBJECTS, OWN, Names, draw_cast, fitting, phrases, reads_back, spoken
 from training.corpus.telling import LONGEST, Teller
 
@@ -21,45 +20,6 @@ LENGTH = 60
 _PERSON = r"(?:the (?:first|second|other)|another|one|an?) (?:person|man|woman|friend|player|dancer)"
 _ONE = rf"(?<!and )(?:he|she|one of them|{_PERSON})"
 _BOTH = r"(?:they|the two|the two of them|two (?:men|women|people|friends|players|dancers))"
-
-
-_SHARED = (
-    "shake-hands",
-    "high-five",
-    "fist-bump",
-    "hug",
-    "walk-together",
-    "walk-hand-in-hand",
-    "ring",
-    "part",
-    "walk-past",
-)
-KINDS = (
-    [(cue, cue) for cue in _SHARED],
-    [
-        ("walk-up", STILL),
-        ("run-up", STILL),
-        ("walk-up+wave", STILL),
-        ("walk-away", "wave"),
-        ("walk-away", "follow"),
-        ("walk-around", "turn-to"),
-        ("step-aside", STILL),
-        ("hand-over", "take-from"),
-        ("hand-over?", "wave-off"),
-        ("hug?", "step-back"),
-        ("pat:shoulder", "turn-to"),
-        ("hand-on:shoulder", STILL),
-        ("whisper", "listen"),
-        ("help-up", "stand-up"),
-        ("push", "stumble"),
-        ("punch", "dodge"),
-        ("kick", "fall-down>stand-up"),
-        ("throw-ball", "catch-thing"),
-        ("walk-together+talk", "walk-together"),
-    ],
-    [(cue, other) for cue in ACTS for other in (cue, STILL, *ANSWERS)],
-)
-"""Cues of a and b: done together, answered, and what one person does alone with any answer."""
 
 
 def beats_of(number: int) -> list[tuple[str, str]]:

@@ -6,86 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from motion.kinematics import forward_kinematics
-from motion.skeleton import SMPL22
+from tests.training.corpus.recorded import SOURCES, J, bone_error, bow, clips, gesture, standing, walk
 from training.corpus import checks, compose
-from training.corpus.cues import Scene, SourceClip
+from training.corpus.cues import Scene
 from training.corpus.library import Library, shorten
-
-J = SMPL22.index
-
-
-def standing(frames: int, *, sway: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
-    """Local rotations and root of a person whose arms hang and who sways a little."""
-    rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
-    rotations[:, J("left_shoulder")] = Rotation.from_rotvec([0, 0, -1.3]).as_matrix()
-    rotations[:, J("right_shoulder")] = Rotation.from_rotvec([0, 0, 1.3]).as_matrix()
-    root = np.zeros((frames, 3))
-    root[:, 0] = sway * np.sin(np.arange(frames) / 20)
-    root[:, 1] = -SMPL22.rest_positions()[:, 1].min() - 0.005
-    return rotations, root
-
-
-def gesture(frames: int, *hands: str) -> np.ndarray:
-    """Raises hands and lowers them."""
-    rotations, root = standing(frames)
-    angle = 2.6 * np.sin(np.linspace(0, np.pi, frames)) ** 2 - 1.3
-    for hand in hands:
-        sign = 1 if hand == "left" else -1
-        rotations[:, J(f"{hand}_shoulder")] = Rotation.from_rotvec(
-            np.stack([0 * angle, 0 * angle, sign * angle], -1)
-        ).as_matrix()
-    return forward_kinematics(rotations, root)
-
-
-def bow(frames: int) -> np.ndarray:
-    rotations, root = standing(frames)
-    bend = np.sin(np.linspace(0, np.pi, frames)) ** 2
-    rotations[:, J("spine1")] = Rotation.from_rotvec(np.stack([bend, 0 * bend, 0 * bend], -1)).as_matrix()
-    return forward_kinematics(rotations, root)
-
-
-def walk(frames: int, speed: float = 1.2) -> np.ndarray:
-    """Legs that swing under a root that moves evenly; feet are planted by the code under test."""
-    rotations, root = standing(frames, sway=0.0)
-    root[:, 2] = speed * np.arange(frames) / 30
-    root[:, 1] -= 0.03
-    phase = 2 * np.pi * np.arange(frames) / 32
-    for sign, side in ((1, "left"), (-1, "right")):
-        swing = -0.42 * sign * np.sin(phase)
-        knee = 0.5 * np.clip(sign * np.cos(phase), 0, None)
-        rotations[:, J(f"{side}_hip")] = Rotation.from_euler("x", (swing - knee / 2)[:, None]).as_matrix()
-        rotations[:, J(f"{side}_knee")] = Rotation.from_euler("x", knee[:, None]).as_matrix()
-    return forward_kinematics(rotations, root)
-
-
-def clips(split: str = "train") -> list[SourceClip]:
-    def clip(positions, action, side=None, number=0):
-        name = f"{split}-{action}-{side}-{number}"
-        return SourceClip(positions, action, "normal", side, name, "made-up", split)
-
-    return [
-        clip(forward_kinematics(*standing(400)), "idle"),
-        clip(bow(80), "bow"),
-        clip(walk(200), "walk"),
-        clip(gesture(80, "right"), "bye"),
-        *(clip(gesture(90, side), "wave", side) for side in ("left", "right")),
-        *(clip(gesture(90, side), "raise-hand", side) for side in ("left", "right")),
-        clip(gesture(90, "left", "right"), "wave", "both"),
-        clip(gesture(90, "left", "right"), "raise-hand", "both"),
-    ]
 
 
 @pytest.fixture(scope="module")
 def library() -> Library:
-    return Library(clips() + clips("test"), "train")
-
-
-def bone_error(positions: np.ndarray) -> float:
-    lengths = np.linalg.norm(positions[..., 1:, :] - positions[..., list(SMPL22.parents[1:]), :], axis=-1)
-    return float(np.abs(lengths - SMPL22.bone_lengths[1:]).max())
+    return Library(SOURCES, "train")
 
 
 def motion(positions: np.ndarray) -> compose.Motion:
@@ -146,7 +77,7 @@ def test_library_performs_the_wanted_side(library: Library, side: str) -> None:
 
 
 def test_library_keeps_splits_apart(library: Library) -> None:
-    test = Library(clips() + clips("test"), "test")
+    test = Library(SOURCES, "test")
     for books, split in ((library, "train"), (test, "test")):
         take = books.take(np.random.default_rng(1), "wave")
         assert all(source.startswith(split) for source in take.motion.sources)

@@ -8,8 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
-from tests.training.corpus.test_beats import more
-from tests.training.corpus.test_compose import bone_error, clips, standing
+from tests.training.corpus.recorded import bone_error, clips, standing
 from training.corpus.beats.script import compose
 from training.corpus.compose import ARMS
 from training.corpus.contact import envelope, reach
@@ -76,7 +75,7 @@ def blow(joint: str, still: list[float], vector: list[float], action: str) -> So
 def library() -> Library:
     punch = blow("right_shoulder", [0, 0, 1.35], [0, 1.45, 0.1], "punch")
     kick = blow("right_hip", [0, 0, 0], [-1.75, 0, 0], "kick")
-    return Library([*clips(), *more("train"), punch, kick], "train")
+    return Library([*clips(), punch, kick], "train")
 
 
 @pytest.mark.parametrize("name", CONTACT)

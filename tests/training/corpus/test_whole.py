@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.training.corpus.test_beats import main, more, path, staged
-from tests.training.corpus.test_compose import clips, walk
+from tests.training.corpus.recorded import SOURCES, main, path, staged, walk
 from training.corpus.beats.acts import ACTS
 from training.corpus.beats.script import opening
 from training.corpus.cues import STILL, SourceClip
@@ -33,7 +32,7 @@ def library() -> Library:
         clip(lowered(300, 0.0, 0.0), "sway"),
         clip(lowered(300, 0.0, 0.0), "shadow-box"),
     ]
-    return Library([*clips(), *clips("test"), *more("train"), *more("test"), *own], "train")
+    return Library([*SOURCES, *own], "train")
 
 
 def test_who_skips_passes_the_other_who_stays(library: Library) -> None:

@@ -10,11 +10,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22
+from acts.staging.poses import about, placed
+from motion import FPS, SMPL22
+from motion.limbs import solve_two_bones
+from motion.skeleton import LEGS, SIDES
+from motion.smoothing import smoothstep
+from motion.vectors import unit
 
 Array = NDArray[np.floating]
 
-FPS = 30
 REST = SMPL22.rest_positions()
 STANDING = 0.956
 POSES = {"sit": (0.50, 0.30), "squat": (0.55, 0.05), "floor": (0.2, 0.5), "crouch": (0.78, 0.0)}
@@ -22,7 +26,6 @@ POSES = {"sit": (0.50, 0.30), "squat": (0.55, 0.05), "floor": (0.2, 0.5), "crouc
 UPPER = [
     SMPL22.index(n) for n in SMPL22.joint_names if not any(p in n for p in ("hip", "knee", "ankle", "foot", "pelvis"))
 ]
-SIDES = ("left", "right")
 
 
 class Puppet:
@@ -39,8 +42,7 @@ class Puppet:
 
     def ramp(self, start: float, stop: float) -> Array:
         """0 before, 1 after, smooth between."""
-        s = np.clip((self.time - start) / max(stop - start, 1e-6), 0, 1)
-        return s * s * (3 - 2 * s)
+        return smoothstep(self.time, start, max(stop, start + 1e-6))
 
     def span(self, start: float, stop: float, ease: float = 0.3) -> Array:
         """1 between the two times, eased over ``ease`` seconds within them."""
@@ -91,10 +93,7 @@ class Puppet:
             else:
                 height, forward = POSES[name]
                 share, ahead = share + weight * (height - share), ahead + weight * forward
-        lean = np.radians(self.lean)[:, None]
-        y, z = local[:, UPPER, 1].copy(), local[:, UPPER, 2].copy()
-        local[:, UPPER, 1] = y * np.cos(lean) - z * np.sin(lean)
-        local[:, UPPER, 2] = y * np.sin(lean) + z * np.cos(lean)
+        local[:, UPPER] = local[:, UPPER] @ np.swapaxes(about(0, np.radians(self.lean)), 1, 2)
         local[:, :, 1] += (share * STANDING)[:, None]
         for side in SIDES:
             hip, knee, ankle, foot = (SMPL22.index(f"{side}_{n}") for n in ("hip", "knee", "ankle", "foot"))
@@ -111,26 +110,14 @@ class Puppet:
         flat = np.stack([local[..., 0], 0.12 - local[..., 2], local[..., 1] - STANDING], axis=-1)
         local = local + lie[:, None, None] * (flat - local)
         local[..., 1] += self.hop[:, None]
-        return self.world(local)
-
-    def world(self, local: Array) -> Array:
-        """Joints (T, J, 3) of the body's frame in the world."""
-        return (
-            np.stack([_turned(joint, self.heading) for joint in local.swapaxes(0, 1)], axis=1)
-            + np.stack([self.x, 0 * self.x, self.z], axis=-1)[:, None]
-        )
+        return placed(local, np.stack([self.x, self.z], axis=-1), np.radians(self.heading))
 
 
-def _knee(hip: Array, ankle: Array, thigh: float = 0.3875, shin: float = 0.4255) -> Array:
+def _knee(hip: Array, ankle: Array) -> Array:
     """Where the knee is, bent forward, for bones of fixed length (straight where the leg is too short)."""
-    line = ankle - hip
-    length = np.linalg.norm(line, axis=-1, keepdims=True)
-    along = (thigh**2 - shin**2 + length**2) / (2 * length)
-    out = np.sqrt(np.maximum(thigh**2 - along**2, 0))
-    direction = line / length
-    side = np.array([0.0, 0.0, 1.0]) - direction * direction[:, 2:]
-    side /= np.maximum(np.linalg.norm(side, axis=-1, keepdims=True), 1e-6)
-    return hip + direction * np.minimum(along, thigh) + side * out
+    thigh, shin = SMPL22.bone_lengths[list(LEGS[0][1:3])]
+    way = unit(ankle - hip)
+    return solve_two_bones(hip, hip + thigh * way, hip + (thigh + shin) * way, ankle, np.array([0.0, 0.0, 1.0]))[0]
 
 
 def play(script: str, seconds: float) -> Array:
@@ -191,7 +178,8 @@ def _with_arms(people: dict[str, Puppet], bodies: dict[str, Array], shared: list
                 line = still[other][:, SMPL22.index("spine3")] - shoulder
                 goal = shoulder + 0.5 * line / np.linalg.norm(line, axis=-1, keepdims=True)
             else:
-                goal = shoulder + _turned(_gesture(verb, side, me.time), me.heading)
+                turned = placed(_gesture(verb, side, me.time)[:, None], np.zeros(2), np.radians(me.heading))
+                goal = shoulder + turned[:, 0]
             _arm(bodies[name], side, goal, weight)
     for cue in shared:
         weight = people["a"].span(float(cue[1]), float(cue[2]))
@@ -223,12 +211,6 @@ def _gesture(verb: str, side: str, time: Array) -> Array:
         "clap": ((-0.12 * out, -0.2, 0.3), (0.1 * out, 0.0, 0.0)),
     }[verb]
     return np.array(middle) + swing[:, None] * np.array(sway)
-
-
-def _turned(local: Array, heading: Array) -> Array:
-    cos, sin = np.cos(np.radians(heading)), np.sin(np.radians(heading))
-    x, y, z = local.T
-    return np.stack([x * cos + z * sin, y, z * cos - x * sin], axis=-1)
 
 
 def _arm(body: Array, side: str, goal: Array, weight: Array) -> None:

@@ -3,11 +3,12 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
 
-from tests.training.trainers.runs import SETTINGS, begin, take, write_corpus
+from tests.training.trainers.runs import SETTINGS, begin, prepared, take
 from training import prepare
 from training.evaluate import held_out
 
@@ -16,15 +17,11 @@ SIXTEEN = 20
 
 @pytest.fixture(scope="module")
 def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("made")
-    corpus = write_corpus(folder / "corpus", scenes=SIXTEEN + 10)
-    rows = json.loads((corpus / "index.json").read_text())
-    for i, row in enumerate(rows):
-        row["split"] = "test" if i < SIXTEEN else "train"
-    (corpus / "index.json").write_text(json.dumps(rows))
-    out = folder / "scenes.safetensors"
-    assert prepare.main(["--corpus", str(corpus), "--out", str(out)]) == 0
-    return out
+    def edit(rows: list[dict[str, Any]]) -> None:
+        for i, row in enumerate(rows):
+            row["split"] = "test" if i < SIXTEEN else "train"
+
+    return prepared(tmp_path_factory.mktemp("made"), scenes=SIXTEEN + 10, edit=edit)
 
 
 def test_runs_are_compared_by_timestep(

@@ -3,7 +3,9 @@ from __future__ import annotations
 import lzma
 from pathlib import Path
 
-from training.evaluate.reading_coverage import coverage, sampled
+import pytest
+
+from training.evaluate.reading_coverage import coverage, main, sampled
 
 
 def test_the_sample_is_the_same_each_time_and_has_each_caption_once(tmp_path: Path) -> None:
@@ -12,6 +14,13 @@ def test_the_sample_is_the_same_each_time_and_has_each_caption_once(tmp_path: Pa
         packed.writelines(f"a person takes {i % 9} steps.\n" for i in range(90))
     assert sampled(file, 5) == sampled(file, 5)
     assert len(set(sampled(file))) == 9
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "captions.xz").write_bytes(b"not packed")
+    for name in ("captions.xz", "none.txt"):
+        assert main([str(tmp_path / name)]) == 2
+        assert f"{name} holds no captions" in capsys.readouterr().err
 
 
 def test_what_is_left_over_is_counted() -> None:

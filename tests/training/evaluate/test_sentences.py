@@ -17,7 +17,7 @@ from motion.metrics.sentences import Sentence, kept_out, load_sentences, read_se
 from motion.metrics.sentences.joints import Motion, longest, stretches
 from motion.metrics.sentences.language import RuleError, check
 from motion.transforms import mirrored
-from tests.training.corpus.test_captions import KINDS
+from tests.training.corpus.recorded import KINDS
 from training.corpus import telling
 from training.corpus.cues import Beat, label
 from training.corpus.telling import Teller

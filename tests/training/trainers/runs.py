@@ -1,12 +1,18 @@
 """A corpus that takes a moment to make, and InterGen's trainer with a network as small as possible."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import torch
+from safetensors.torch import load_file
+from torch import Tensor
 
 from motion import SMPL22
 from training import prepare
+from training.core.loop import Loop
 from training.trainers.intergen import Trainer
 from training.trainers.intergen_data import Settings
 
@@ -16,8 +22,8 @@ SETTINGS = Settings(
 HANDS_MEET = [{"a": "right_wrist", "b": "right_wrist", "start": 10, "end": 20}]
 
 
-def write_corpus(folder: Path, scenes: int = 10) -> Path:
-    """Two people who sway, for one to two seconds a scene."""
+def write_corpus(folder: Path, scenes: int = 10, edit: Callable[[list[dict[str, Any]]], None] | None = None) -> Path:
+    """Two people who sway, for one to two seconds a scene; ``edit`` changes the rows of the index."""
     rng = np.random.default_rng(0)
     rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
     motions, index, start = [], [], 0
@@ -34,16 +40,18 @@ def write_corpus(folder: Path, scenes: int = 10) -> Path:
             | {"events": {"contact": HANDS_MEET} if i % 2 else {}, "sources": []}
         )
         start += frames
+    if edit is not None:
+        edit(index)
     folder.mkdir()
     np.save(folder / "motions.npy", np.concatenate(motions).astype(np.float32))
     (folder / "index.json").write_text(json.dumps(index))
     return folder
 
 
-def prepared(folder: Path) -> Path:
+def prepared(folder: Path, **known: Any) -> Path:
     """The file of prepared scenes of such a corpus, both in ``folder``."""
     out = folder / "scenes.safetensors"
-    assert prepare.main(["--corpus", str(write_corpus(folder / "corpus")), "--out", str(out)]) == 0
+    assert prepare.main(["--corpus", str(write_corpus(folder / "corpus", **known)), "--out", str(out)]) == 0
     return out
 
 
@@ -51,9 +59,28 @@ def begin(scenes: Path, out: Path, settings: Settings = SETTINGS, **options: Pat
     return Trainer(prepare.load(scenes), settings, out, **options)
 
 
-def take(trainer: Trainer, steps: int) -> Trainer:
-    """Takes some steps, as a run that is stopped then: saved where it stands."""
-    for _ in range(steps):
-        trainer.train_step()
+def flags(settings: object, *names: str) -> list[str]:
+    """Some settings as the words of a command."""
+    return [word for name in names for word in ("--" + name.replace("_", "-"), str(getattr(settings, name)))]
+
+
+def take(trainer: Loop, steps: int) -> list[dict[str, float]]:
+    """Takes some steps, as a run that is stopped then: saved where it stands; the loss terms of each."""
+    terms = [trainer.train_step() for _ in range(steps)]
     trainer.save()
-    return trainer
+    return terms
+
+
+def resumed(
+    begin: Callable[[Path], Loop], folder: Path, steps: int = 4, stops: int = 2
+) -> tuple[list[dict[str, float]], dict[str, Tensor]]:
+    """A run that ``stops`` goes on as if it never had: the loss terms of its steps, and the tensors that it keeps."""
+    whole = take(begin(folder / "whole"), steps)
+    parts = take(begin(folder / "parts"), stops)
+    again = begin(folder / "parts")
+    assert again.step == stops
+    assert [*parts, *take(again, steps - stops)] == whole
+    one, other = (load_file(folder / name / "last.safetensors") for name in ("whole", "parts"))
+    assert one.keys() == other.keys()
+    assert [key for key in one if not torch.equal(one[key], other[key])] == []
+    return whole, one

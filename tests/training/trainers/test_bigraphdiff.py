@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
-from safetensors.torch import load_file
 
 from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.weights_io import load_network
 from motion import InputError
-from tests.training.trainers.runs import write_corpus
+from tests.training.trainers.runs import flags, prepared, resumed
 from training import prepare
 from training.corpus.cues import Beat, label
 from training.trainers import bigraphdiff
@@ -26,20 +25,15 @@ SETTINGS = Settings(
 @pytest.fixture(scope="module")
 def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Half of the scenes are handshakes, in the others both wave; one is of two beats, which is no class."""
-    folder = tmp_path_factory.mktemp("classes")
-    corpus = write_corpus(folder / "corpus", scenes=13)
-    rows = json.loads((corpus / "index.json").read_text())
-    for i, row in enumerate(rows):
-        cue = "shake-hands" if i % 2 else "wave"
-        row["label"] = label([Beat((cue, cue), 0, row["frames"], relation="while")], row["frames"]).row()
-        row["beats"] = []
-        if i == 4:
+
+    def edit(rows: list[dict[str, Any]]) -> None:
+        for i, row in enumerate(rows):
+            cue = "shake-hands" if i % 2 else "wave"
+            row["label"] = label([Beat((cue, cue), 0, row["frames"], relation="while")], row["frames"]).row()
             beat = {"start": 0, "end": row["frames"], "acts": [cue, cue], "minor": False, "captions": ["They wave."]}
-            row["beats"] = [beat, beat]
-    (corpus / "index.json").write_text(json.dumps(rows))
-    out = folder / "scenes.safetensors"
-    assert prepare.main(["--corpus", str(corpus), "--out", str(out)]) == 0
-    return out
+            row["beats"] = [beat, beat] if i == 4 else []
+
+    return prepared(tmp_path_factory.mktemp("classes"), scenes=13, edit=edit)
 
 
 def test_labels_are_classes_and_what_most_of_their_scenes_touch_is_theirs(scenes: Path) -> None:
@@ -54,31 +48,17 @@ def test_labels_are_classes_and_what_most_of_their_scenes_touch_is_theirs(scenes
 
 
 def test_a_run_that_stops_goes_on_as_if_it_never_had(scenes: Path, tmp_path: Path) -> None:
-    torch.set_num_threads(1)
     loaded = prepare.load(scenes)
-    straight = Trainer(loaded, SETTINGS, tmp_path / "straight")
-    losses = [terms["total"] for terms in straight.run(minutes=10)]
-    assert len(losses) == 6 and losses[-1] < losses[0]
-    stopped = Trainer(loaded, SETTINGS, tmp_path / "stopped")
-    for _ in range(3):
-        stopped.train_step()
-    stopped.save()
-    resumed = Trainer(loaded, SETTINGS, tmp_path / "stopped")
-    assert resumed.step == 3 and len(list(resumed.run(minutes=10))) == 3
-    one, other = (load_file(tmp_path / name / "last.safetensors") for name in ("straight", "stopped"))
-    assert [key for key in one if not torch.equal(one[key], other[key])] == []
-    seen = "ema/denoiser.network.temporal_decoder_blocks.0.bipartite_graph.blocker.running_var"
-    assert not torch.equal(one[seen], torch.ones_like(one[seen]))
+    terms, kept = resumed(lambda out: Trainer(loaded, SETTINGS, out), tmp_path, steps=6)
+    assert terms[-1]["total"] < terms[0]["total"]
+    seen = kept["ema/denoiser.network.temporal_decoder_blocks.0.bipartite_graph.blocker.running_var"]
+    assert not torch.equal(seen, torch.ones_like(seen))
 
 
 def test_the_shell_writes_the_folder_that_is_shipped(
     scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    sizes = [
-        word
-        for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "embed_dim", "cond_dim", "batch")
-        for word in ("--" + name.replace("_", "-"), str(getattr(SETTINGS, name)))
-    ]
+    sizes = flags(SETTINGS, "latent_dim", "ff_size", "num_layers", "num_heads", "embed_dim", "cond_dim", "batch")
     words = ["--scenes", str(scenes), "--out", str(tmp_path / "run"), *sizes]
     assert bigraphdiff.main([*words, "--steps", "2", "--export", str(tmp_path / "weights")]) == 0
     model, source = load_network(tmp_path / "weights", CompactBiGraphDiff)

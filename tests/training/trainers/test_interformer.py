@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from safetensors.torch import load_file
 
 from models.interformer.compact import CompactInterFormer
 from models.weights_io import load_network
 from motion import SMPL22
 from motion.transforms import heading
+from tests.training.trainers.runs import flags, resumed
 from training.corpus.pairs import Pair
 from training.trainers import interformer
 from training.trainers.interformer import Settings, Trainer, varied
@@ -31,20 +31,7 @@ def scenes() -> list[np.ndarray]:
 
 
 def test_a_run_that_stops_goes_on_as_if_it_had_not(scenes, tmp_path: Path) -> None:
-    whole = Trainer(scenes, SETTINGS, tmp_path / "whole")
-    for _ in whole.run(minutes=9):
-        pass
-    first = Trainer(scenes, SETTINGS, tmp_path / "parts")
-    for _ in range(3):
-        first.train_step()
-    first.save()
-    second = Trainer(scenes, SETTINGS, tmp_path / "parts")
-    assert second.step == 3
-    for _ in second.run(minutes=9):
-        pass
-    one, other = (load_file(tmp_path / name / "last.safetensors") for name in ("whole", "parts"))
-    assert one.keys() == other.keys()
-    assert all(torch.equal(one[name], other[name]) for name in one)
+    resumed(lambda out: Trainer(scenes, SETTINGS, out), tmp_path)
 
 
 def test_training_changes_the_attention_and_leaves_the_linear_part(scenes, tmp_path: Path) -> None:
@@ -75,11 +62,7 @@ def test_benchmark_clips_stay_out_and_weights_are_written(scenes, tmp_path: Path
     monkeypatch.setattr(interformer, "load_pairs", lambda *_: pairs)
     seen = []
     monkeypatch.setattr(interformer, "Trainer", lambda given, *rest: seen.append(given) or Trainer(given, *rest))
-    sizes = [
-        word
-        for name in ("joint_width", "ff_size", "batch", "warmup", "rounds")
-        for word in ("--" + name.replace("_", "-"), str(getattr(SETTINGS, name)))
-    ]
+    sizes = flags(SETTINGS, "joint_width", "ff_size", "batch", "warmup", "rounds")
     command = ["--data", "x", "--out", str(tmp_path / "run"), "--export", str(tmp_path / "w"), *sizes]
     assert interformer.main([*command, "--steps", "2"]) == 0
     assert len(seen[0]) == 9

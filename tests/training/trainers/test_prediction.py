@@ -14,6 +14,7 @@ from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.weights_io import save_network
 from motion import SMPL22, InputError
 from motion.transforms import heading
+from tests.training.trainers.runs import flags, resumed
 from training.evaluate import prediction as product
 from training.trainers import mawgan
 from training.trainers import motion_mlp as mlp
@@ -69,26 +70,15 @@ def test_windows_are_of_one_split_in_the_frame_of_their_last_pose(corpus: Path) 
 
 @pytest.mark.parametrize("kind", ["mlp", "mawgan", "lean"])
 def test_a_run_that_stops_goes_on_as_if_it_had_not(kind: str, corpus: Path, tmp_path: Path) -> None:
-    whole, cut = start(kind, corpus, tmp_path / "whole"), start(kind, corpus, tmp_path / "cut")
-    terms = list(whole.run(minutes=5))
-    before = [next(cut.run(minutes=5))]
-    cut.save()
-    resumed = start(kind, corpus, tmp_path / "cut")
-    assert resumed.step == 1
-    after = list(resumed.run(minutes=5))
-    assert [*before, *after] == terms
-    for a, b in zip(whole.ema.parameters(), resumed.ema.parameters(), strict=True):
-        assert torch.equal(a, b)
+    resumed(lambda out: start(kind, corpus, out), tmp_path, steps=3, stops=1)
     with pytest.raises(InputError, match="other settings"):
-        start(kind, corpus, tmp_path / "cut", seed=1)
+        start(kind, corpus, tmp_path / "parts", seed=1)
 
 
 @pytest.mark.parametrize("kind", ["mlp", "mawgan"])
 def test_the_shell_writes_a_predictor(kind: str, corpus: Path, tmp_path: Path) -> None:
     settings, main = (MLP, mlp.main) if kind == "mlp" else (GAN, mawgan.main)
-    asked = [
-        f"--{key.replace('_', '-')}={value}" for key, value in vars(settings).items() if not isinstance(value, bool)
-    ]
+    asked = flags(settings, *(name for name, value in vars(settings).items() if not isinstance(value, bool)))
     folders = ["--data", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "folder")]
     assert main([*asked, *folders]) == 0
     predictor, source = load_predictor(tmp_path / "folder")

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
@@ -9,10 +10,11 @@ from safetensors.torch import load_file
 
 from models.intergen.compact import CaptionBank, CompactConfig, CompactInterGen
 from models.intergen.compact import save_folder as save_intergen
-from models.motion_tokens import FEATURES, TokenLayout, canonical_control, decode, encode, mirror_control
+from models.motion_tokens import FEATURES, TokenLayout, canonical_control, decode, mirror_control
 from models.regennet.compact import CompactReGenNet
 from models.weights_io import load_network
 from motion import SMPL22, InputError
+from tests.training.trainers.runs import flags, prepared, resumed
 from training import prepare
 from training.prepare import Scenes
 from training.trainers import regennet
@@ -20,41 +22,18 @@ from training.trainers.regennet import Settings, Trainer, interaction_loss
 from training.trainers.regennet_data import knot_positions, seen_rows
 
 SETTINGS = Settings(latent_dim=16, ff_size=16, num_layers=1, num_heads=2, batch=4, steps=6, warmup=2)
-SIZES = [
-    word
-    for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "batch", "warmup")
-    for word in ("--" + name.replace("_", "-"), str(getattr(SETTINGS, name)))
-]
+SIZES = flags(SETTINGS, "latent_dim", "ff_size", "num_layers", "num_heads", "batch", "warmup")
 
 
 @pytest.fixture(scope="module")
-def scenes() -> Scenes:
+def scenes(tmp_path_factory: pytest.TempPathFactory) -> Scenes:
     """Two people who sway, eight times."""
-    layout = TokenLayout(4, 2)
-    generator = torch.Generator().manual_seed(0)
-    rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
-    control, rows, start = [], [], 0
-    for i in range(8):
-        tokens = 6 + i % 3
-        frames = layout.num_frames(tokens)
-        time = torch.arange(frames)[:, None, None] / 30
-        a = rest + 0.05 * torch.sin(4 * time) * torch.randn(1, 22, 3, generator=generator)
-        b = (rest * torch.tensor([-1.0, 1, -1]) + torch.tensor([0.0, 0, 1.5])).expand_as(a)
-        both = encode(torch.stack([a, b]), torch.ones(2, frames, 4), layout)
-        control.append(both.transpose(0, 1).half())
-        rows.append(
-            {
-                "start": start,
-                "tokens": tokens,
-                "family": "sway",
-                "split": "train",
-                "captions": ["One person waves the left hand."],
-                "events": {},
-                "sources": [],
-            }
-        )
-        start += tokens * layout.knots_per_token
-    return Scenes(torch.cat(control), rows, layout)
+
+    def edit(rows: list[dict[str, Any]]) -> None:
+        for row in rows:
+            row |= {"split": "train", "captions": ["One person waves the left hand."], "events": {}}
+
+    return prepare.load(prepared(tmp_path_factory.mktemp("made"), scenes=8, edit=edit))
 
 
 @pytest.fixture(scope="module")
@@ -68,28 +47,14 @@ def words(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def take(trainer: Trainer, steps: int) -> Trainer:
-    for _ in range(steps):
-        trainer.train_step()
-    trainer.save()
-    return trainer
-
-
 def test_a_run_that_stops_goes_on_as_if_it_never_had(scenes: Scenes, words: Path, tmp_path: Path) -> None:
-    straight = take(Trainer(scenes, SETTINGS, tmp_path / "a", words=words), 4)
-    take(Trainer(scenes, SETTINGS, tmp_path / "b", words=words), 2)
-    resumed = Trainer(scenes, SETTINGS, tmp_path / "b", words=words)
-    assert resumed.step == 2
-    take(resumed, 2)
-    one, other = (load_file(tmp_path / run / "last.safetensors") for run in "ab")
-    assert one.keys() == other.keys()
-    assert [key for key in one if not torch.equal(one[key], other[key])] == []
-    start = Trainer(scenes, SETTINGS, tmp_path / "c", words=words).model.state_dict()
-    moved = {name for name, value in straight.model.state_dict().items() if not torch.equal(value, start[name])}
+    _, kept = resumed(lambda out: Trainer(scenes, SETTINGS, out, words=words), tmp_path)
+    fresh = Trainer(scenes, SETTINGS, tmp_path / "fresh", words=words).model.state_dict()
+    moved = {name for name, value in fresh.items() if not torch.equal(value, kept[f"model/{name}"])}
     assert "network.output_process.poseFinal.weight" in moved
     assert not any(name.startswith("conditioner.") for name in moved)
     with pytest.raises(InputError, match="run of other settings"):
-        Trainer(scenes, replace(SETTINGS, learning_rate=1e-3), tmp_path / "b", words=words)
+        Trainer(scenes, replace(SETTINGS, learning_rate=1e-3), tmp_path / "whole", words=words)
 
 
 def test_the_command_trains_and_ships(scenes: Scenes, words: Path, tmp_path: Path) -> None:
@@ -171,14 +136,8 @@ def test_the_past_becomes_the_networks_own_from_a_step_on(scenes: Scenes, words:
     straight = Trainer(scenes, settings, tmp_path / "a", words=words)
     assert [share(straight, step) for step in range(5)] == [0, 0, 0.5, 1, 1]
     # A network that predicts the mean is near the still people of these scenes.
-    assert straight.train_step()["own"] == straight.train_step()["own"] == 0
-    straight.train_step()
-    assert straight.train_step()["own"] > 0
-    straight.save()
-    take(Trainer(scenes, settings, tmp_path / "b", words=words), 3)
-    take(Trainer(scenes, settings, tmp_path / "b", words=words), 1)
-    one, other = (load_file(tmp_path / run / "last.safetensors") for run in "ab")
-    assert [key for key in one if not torch.equal(one[key], other[key])] == []
+    terms, _ = resumed(lambda out: Trainer(scenes, settings, out, words=words), tmp_path, stops=3)
+    assert terms[0]["own"] == terms[1]["own"] == 0 < terms[3]["own"]
     offline = Trainer(scenes, replace(settings, offline=1.0, own_after=0), tmp_path / "c", words=words)
     assert offline.train_step()["own"] == 0, "offline every row sees all of the actor"
 

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from acts.staging.gestures import GESTURES, Stroke
+from motion import FPS
 from motion.kinematics import forward_kinematics
-from motion.skeleton import SMPL22
+from motion.skeleton import SIDES, SMPL22
 from motion.smoothing import smoothstep
 from motion.vectors import FLAT, unit
 
-from ..compose import ARMS, FPS, Array, Motion, join, layer
+from ..compose import ARMS, Array, Motion, join, layer, looped
 from ..contact import UP, axes, bend, envelope, impulse, lean_to, nod, on_body, reach_arm, shift_hips
 from ..library import Library, Take, pick
 from ..touches import Touched
@@ -24,7 +25,6 @@ from .play import Done, Effect, Make, Option, Play, Rng
 
 HEAD = SMPL22.index("head")
 UPPER = (*ARMS["left"], *ARMS["right"])
-SIDES = ("left", "right")
 
 
 def one_of(play: Play, actions: Sequence[str]) -> str:
@@ -71,10 +71,10 @@ class Part:
         motion = play.library.take(rng, action, side=side, frames=(1, 10_000 if self.lasts else 400)).motion
         motion = motion[self.skip : len(motion) - self.cut]
         if self.times:
-            motion = _looped(motion, int(len(motion) * rng.uniform(*self.times)))
+            motion = looped(motion, motion, int(len(motion) * rng.uniform(*self.times)), blend=6)
         if self.lasts:
             frames = play.seconds(*self.lasts)
-            motion = _looped(motion, frames)
+            motion = looped(motion, motion, frames, blend=6)
             at = int(rng.integers(0, len(motion) - frames + 1))
             motion = motion[at : at + frames]
             way = (motion.root[-1] - motion.root[0]) * FLAT
@@ -84,14 +84,6 @@ class Part:
             return [motion]
         last = [len(motion) - 1] * play.seconds(*self.rests)
         return [motion, Motion(motion.rotations[last], motion.root[last], motion.sources)]
-
-
-def _looped(motion: Motion, frames: int) -> Motion:
-    """At least ``frames`` frames of a clip, one performance after the other."""
-    longer = motion
-    while len(longer) < frames:
-        longer = join(longer, motion, blend=6)
-    return longer
 
 
 def chain(*parts: Part, blend: int = 12, one_sided: bool = False) -> Make:

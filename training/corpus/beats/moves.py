@@ -4,23 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from motion.vectors import wrapped
+from motion.vectors import bearing, direction, leftwards, travelled, wrapped
 
 from ..compose import Array, ease, steer
 from ..cues import STILL
 from ..library import Take, pick, stride
 from .acts import ACTS, SPOKEN, arms_over, one_of
-from .play import Play, bearing
-
-
-def ahead(angle: float) -> Array:
-    """(2,) unit vector (x, z) of a heading."""
-    return np.array([np.sin(angle), np.cos(angle)])
-
-
-def leftwards(angle: float) -> Array:
-    """(2,) unit vector on the floor to the left of a heading in radians."""
-    return np.array([np.cos(angle), -np.sin(angle)])
+from .play import Play
 
 
 def gait(play: Play, *, fast: float = 0.15) -> str:
@@ -39,8 +29,7 @@ def off_from(play: Play, i: int) -> float:
 
 def rounded(take: Take, radius: float) -> Array:
     """(T,) radians by which a walk has turned that goes round a point: to the left for a radius above 0, in metres."""
-    steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
-    return np.concatenate([[0.0], np.cumsum(steps)]) / radius
+    return travelled(take.motion.root[:, [0, 2]]) / radius
 
 
 def sideways(play: Play, metres: float) -> tuple[Take, float]:
@@ -112,11 +101,11 @@ def leave(play: Play, i: int) -> None:
     if answer in ACTS and not play.library.has(*ACTS[answer].needs):
         answer = STILL
     stops = answer != "follow" and rng.random() < 0.6
-    take = own.go(own.spot + rng.uniform(1.6, 3.0) * ahead(way), None, action=action, stop=stops)
+    take = own.go(own.spot + rng.uniform(1.6, 3.0) * direction(way), None, action=action, stop=stops)
     side, style = None, "normal"
     if answer == "follow":
         other.hold(play.seconds(0.1, 0.5))
-        other.go(own.spot - rng.uniform(0.9, 1.3) * ahead(way), None, action=action, stop=False)
+        other.go(own.spot - rng.uniform(0.9, 1.3) * direction(way), None, action=action, stop=False)
         answer = "chase" if action == "run" else "follow"
     elif answer != STILL:
         other.hold(play.seconds(0.3, 0.9))
@@ -132,7 +121,7 @@ def part(play: Play, i: int) -> None:
     for k in (i, 1 - i):
         person = play.people[k]
         person.hold(int(rng.integers(0, 15)) * (k != i))
-        far = rng.uniform(1.6, 2.6) * ahead(off_from(play, k))
+        far = rng.uniform(1.6, 2.6) * direction(off_from(play, k))
         styles.append(person.go(person.spot + far, None, stop=rng.random() < 0.5).style)
     play.note(("part", "part"), start, i=i, styles=tuple(styles))
 
@@ -188,7 +177,7 @@ def pace_about(play: Play, i: int) -> None:
     """i walks up and down while the other stands."""
     start, own, _ = play.begin(i)
     home, way = own.spot, own.angle + pick(play.rng, (-1, 1)) * np.pi / 2
-    take = own.go(home + play.rng.uniform(1.0, 1.5) * ahead(way), None, stop=False)
+    take = own.go(home + play.rng.uniform(1.0, 1.5) * direction(way), None, stop=False)
     own.go(home, None, stop=True)
     play.note(("pace", STILL), start, i=i, styles=(take.style, "normal"))
 
@@ -196,7 +185,7 @@ def pace_about(play: Play, i: int) -> None:
 def go_past(play: Play, i: int, spot: Array, aside: float, *, action: str = "walk") -> Take:
     """i goes past a spot, ``aside`` metres to the left of it, without stopping."""
     way = bearing(spot - play.people[i].spot)
-    target = spot + aside * leftwards(way) + play.rng.uniform(0.3, 1.0) * ahead(way)
+    target = spot + aside * leftwards(way) + play.rng.uniform(0.3, 1.0) * direction(way)
     return play.people[i].go(target, None, action=action, stop=False)
 
 

@@ -9,25 +9,19 @@ from typing import Any
 
 import numpy as np
 
+from motion import FPS
 from motion.transforms import canonicalize
-from motion.vectors import wrapped
+from motion.vectors import bearing, wrapped
 
-from ..compose import FPS, Array, Motion, blend_for, ease, facing_at, join, look_at, place, realise, steer
+from ..compose import Array, Motion, blend_for, ease, facing_at, join, look_at, looped, place, realise, steer
 from ..cues import STILL, Beat
 from ..library import Library, Take, stride
-from ..touches import Touches
-
-Rng = np.random.Generator
+from ..touches import Rng, Touches
 
 Stand = tuple[tuple[float, float], float]
 """x and z in metres, and a heading in radians."""
 SHUFFLE = 0.45
 """Metres up to which a person shifts by small steps on the spot instead of walking."""
-
-
-def bearing(vector: Array) -> float:
-    """Heading of an (x, z) vector in radians."""
-    return float(np.arctan2(vector[0], vector[1]))
 
 
 @dataclass(frozen=True)
@@ -83,8 +77,7 @@ class Performer:
         """The next ``frames`` frames of the person's own way of standing."""
         if self._used + frames > len(self._rest):
             self._used = 0
-        while len(self._rest) < frames:
-            self._rest = join(self._rest, self._rest, blend=20)
+        self._rest = looped(self._rest, self._rest, frames, blend=20)
         part = self._rest[self._used : self._used + frames]
         self._used += frames
         return part

@@ -6,17 +6,18 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from motion.vectors import wrapped
+from motion.skeleton import OTHER_SIDE
+from motion.vectors import direction, leftwards, wrapped
 
 from .. import touches
-from ..compose import OTHER, Array, steer
+from ..compose import Array, steer
 from ..contact import ELBOW_DOWN, axes, envelope, impulse, lean_to, nod, on_body, reach, reach_arm, towards
 from ..cues import STILL
 from ..library import pick
 from ..touches import HandOn, Rng, Slap, Touch, Touched, chosen_side
 from .acts import ACTS, gives_way
 from .acts import reach as reach_of
-from .moves import abreast, ahead, close_in, come, leftwards, rounded, side_by_side, sideways
+from .moves import abreast, close_in, come, rounded, side_by_side, sideways
 from .play import Option, Play
 
 FALL = "fall-down>stand-up"
@@ -183,7 +184,7 @@ def at_back(
     rng, side = play.rng, chosen_side(play.rng)
     sign = 1.0 if side == "right" else -1.0
     way = other.angle + sign * rng.uniform(*turned)
-    spot = other.spot - rng.uniform(*back) * ahead(way) + sign * rng.uniform(*aside) * leftwards(way)
+    spot = other.spot - rng.uniform(*back) * direction(way) + sign * rng.uniform(*aside) * leftwards(way)
     return play.settle(i, spot, way, cue), side
 
 
@@ -250,7 +251,7 @@ def hand_in_hand(play: Play, i: int) -> None:
         start, _, side = abreast(play, i, gap, (2.0, 2.8 if play.brisk else 4.2))
         name = "walk-hand-in-hand"
     hand, stop, taken = "left" if side > 0 else "right", play.sync(), max(start - 14, begun)
-    make = touches.joined_hands((hand, OTHER[hand]), height=rng.uniform(0.78, 0.86), carried=True)
+    make = touches.joined_hands((hand, OTHER_SIDE[hand]), height=rng.uniform(0.78, 0.86), carried=True)
     play.effect(taken, stop + 22, lambda rng, a, b: make(rng, a, b, 0, stop - taken - 4, hand), i=i)
     play.note((name, name), taken, i=i)
     for k in (0, 1):
