@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from tests.motion.bodies import bone_lengths
+from motion.kinematics import bone_lengths
 
 from .playing import pause, settled_box, until
 

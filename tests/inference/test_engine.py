@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, InputError
+from motion.kinematics import bone_lengths
 from tests.inference.runs import run
-from tests.motion.bodies import bone_lengths
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, Result
 from webdemo.inference.engine import Engine
 

@@ -11,7 +11,7 @@ from models.errors import WeightsError
 from models.interformer.compact import CompactInterFormer, CompactInterFormerConfig
 from models.weights_io import save_network
 from motion import SMPL22, InputError
-from tests.motion.bodies import bone_lengths
+from motion.kinematics import bone_lengths
 from webdemo.inference import GenerateRequest, ReactRequest, Result
 from webdemo.inference.engine import Engine
 

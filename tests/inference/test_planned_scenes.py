@@ -10,8 +10,8 @@ import pytest
 from acts.staging.poses import lying, seated, stooping, upright
 from acts.staging.postures import posture_joints
 from motion import SMPL22
+from motion.kinematics import bone_lengths
 from motion.metrics.quality import mirror_gap
-from tests.motion.bodies import bone_lengths
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
 from webdemo.inference.story import Beat
 

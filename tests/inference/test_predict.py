@@ -13,7 +13,6 @@ from motion.formats import read
 from motion.kinematics import bone_lengths, forward_kinematics
 from motion.skeleton import SBU15
 from motion.transforms import heading_matrix
-from tests.motion.bodies import bone_lengths
 from webdemo.inference import PredictRequest, PredictResult
 from webdemo.inference.engine import Engine
 from webdemo.inference.method import WEIGHTS

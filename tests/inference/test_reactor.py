@@ -12,7 +12,7 @@ from models.motion_tokens import FEATURES, encode
 from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, CompactStream
 from models.weights_io import load_network, save_network
 from motion import SMPL22, InputError
-from tests.motion.bodies import bone_lengths
+from motion.kinematics import bone_lengths
 from webdemo.inference import ReactRequest, Result
 from webdemo.inference.engine import Engine
 from webdemo.inference.pipelines import regennet as reactor

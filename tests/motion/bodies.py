@@ -58,11 +58,6 @@ def gliding(frames: int = 90, *, speed: float = 0.1, sink: float = 0.02) -> np.n
     return pose + time * np.array([speed, 0, 0]) - np.array([0, sink, 0])
 
 
-def bone_lengths(positions: np.ndarray) -> np.ndarray:
-    """(…, 21) metres of the bones of poses (…, 22, 3), in the order of the joints that they end in."""
-    return np.linalg.norm(positions[..., 1:, :] - positions[..., list(SMPL22.parents[1:]), :], axis=-1)
-
-
 def as_stored(source: Path | bytes, name: str | None = None) -> Clip | Duet:
     """The one or two people of a file on the file's own joints, before they are brought onto SMPL22."""
     people = import_motion(source, name=name).people

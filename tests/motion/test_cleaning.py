@@ -8,11 +8,11 @@ from scipy.ndimage import gaussian_filter1d
 
 from motion import SMPL22
 from motion.cleaning import foot_contacts, plant_feet
-from motion.kinematics import project_to_skeleton
+from motion.kinematics import bone_lengths, project_to_skeleton
 from motion.limbs import solve_two_bones, steadied
 from motion.skeleton import FEET
 
-from .bodies import FPS, bone_lengths, gliding, marching
+from .bodies import FPS, gliding, marching
 
 
 def test_a_gliding_person_stands_still_after_planting():

@@ -8,12 +8,13 @@ import pytest
 from motion import SMPL22
 from motion.cleaning import foot_contacts, plant_feet
 from motion.footsteps import pivoting, stepping, with_feet
+from motion.kinematics import bone_lengths
 from motion.metrics.quality import joint_speeds, naturalness
 from motion.smoothing import minimum_jerk
 from motion.transforms import facing, heading_matrix
 from webdemo.inference.finish.cleanup import clean_person, on_constant_bones
 
-from .bodies import FPS, bone_lengths
+from .bodies import FPS
 
 FEET = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("ankle", "foot")]
 LEGS = [*FEET, *(SMPL22.index(f"{side}_knee") for side in ("left", "right"))]

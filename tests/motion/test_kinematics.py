@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22
 from motion.kinematics import (
+    bone_lengths,
     fit_rotations,
     followed_rotations,
     forward_kinematics,
@@ -17,7 +18,6 @@ from motion.kinematics import (
     project_to_skeleton,
     rotation_matrices,
 )
-from tests.motion.bodies import bone_lengths
 
 quick = settings(max_examples=25, deadline=None)
 

@@ -13,7 +13,6 @@ from motion.sizes import at_sizes, floor_scale, of_adults
 from motion.skeleton import LEGS
 from motion.swings import above_floor
 from motion.transforms import heading_matrix
-from tests.motion.bodies import bone_lengths
 
 FPS, CHILD = 30.0, SIZES["girl"]
 MIXED = (1.0, CHILD)

@@ -10,7 +10,6 @@ from motion.kinematics import bone_lengths
 from motion.steering import REST_FROM, TURN_UNTIL, Goal, Steering
 from motion.transforms import heading, heading_matrix
 from tests.inference.people import waver
-from tests.motion.bodies import bone_lengths
 
 STANDING = waver(1.0).positions[0] @ heading_matrix(-np.radians(50)).T
 STANDING = STANDING - STANDING[0] * [1, 0, 1]

@@ -10,7 +10,6 @@ from acts.staging.poses import kneeling, lying, upright
 from motion import SMPL22
 from motion.kinematics import bone_lengths
 from motion.swings import above_floor, lift_swinging_feet
-from tests.motion.bodies import bone_lengths
 
 Array = NDArray[np.floating]
 FPS = 30.0

@@ -13,13 +13,13 @@ from acts.staging.places import Course
 from acts.staging.poses import SOLE
 from acts.staging.recordings import on_all_fours, walking
 from motion import SMPL22
+from motion.kinematics import bone_lengths
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check
 from motion.metrics.sentences.poses import low
 from motion.vectors import Array
 from tests.inference.followed import Follower
 from tests.inference.runs import positions
-from tests.motion.bodies import bone_lengths
 from webdemo.inference.story import Beat, SceneRequest
 
 from .staged_words import score

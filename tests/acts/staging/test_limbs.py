@@ -13,7 +13,7 @@ from acts.staging.limbs import MOVES, RAISES, limbed
 from acts.staging.poses import upright
 from acts.staging.stage import score_of
 from motion import FPS, SMPL22, Duet
-from tests.motion.bodies import bone_lengths
+from motion.kinematics import bone_lengths
 from webdemo.inference.pipelines.given import NAMES
 
 SECONDS = np.arange(150) / FPS

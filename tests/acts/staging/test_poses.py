@@ -7,11 +7,11 @@ import pytest
 
 from acts.staging.poses import LOWER, bending, crouching, grounded, kneeling, lying, seated, stooping, upright
 from motion import SMPL22
+from motion.kinematics import bone_lengths
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.poses import kneels, lies, low, sits
 from motion.metrics.sentences.poses import upright as is_upright
 from motion.transforms import heading
-from tests.motion.bodies import bone_lengths
 
 PLACE = np.array([1.0, -2.0])
 TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]

@@ -9,8 +9,8 @@ from acts.shapes import Figure, Gesture
 from acts.staging.places import Course, Standing
 from acts.staging.recordings import _read, dancing, performance, performing, standing_by, walking
 from motion import FPS, SMPL22
+from motion.kinematics import bone_lengths
 from motion.transforms import heading
-from tests.motion.bodies import bone_lengths
 
 FRAMES = np.arange(600)
 PLACE = np.array([2.0, -1.0])

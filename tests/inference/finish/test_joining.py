@@ -6,7 +6,6 @@ from motion import SMPL22
 from motion.kinematics import bone_lengths, fit_rotations, forward_kinematics
 from motion.skeleton import FEET
 from motion.transforms import heading_matrix
-from tests.motion.bodies import bone_lengths
 from webdemo.inference.finish.joining import PASSING, REACH, closed, joined, passing
 from webdemo.inference.pipelines.given import with_given
 

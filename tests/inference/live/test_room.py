@@ -8,10 +8,10 @@ import pytest
 from acts.staging.gestures import wrist
 from acts.staging.poses import HANDS
 from motion import SMPL22
+from motion.kinematics import bone_lengths
 from motion.skeleton import SIDES
 from motion.transforms import heading_matrix
 from motion.video.following import HIDDEN
-from tests.motion.bodies import bone_lengths
 from webdemo.inference.live.agent import BESIDE, LiveAgent
 from webdemo.inference.live.room import BRIGHT, COLD, FRAMES, HOT, LOUD, PLACES, SMELLS, STANDS, Complaint, complaint
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Clip, Duet
+from motion.kinematics import bone_lengths
 from motion.metrics.quality import DEEP, jerk_percentile, limb_depth, standing_foot
 from motion.touch.apart import CLEAR, bodies_apart, out_of_the_way
 from motion.transforms import heading_matrix
-from tests.motion.bodies import bone_lengths
 from webdemo.inference import ReactRequest, Result
 from webdemo.inference.finish.cleanup import standing_clear
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
+from motion.kinematics import bone_lengths
 from motion.metrics.quality import DEEP, jerk_percentile, limb_depth
 from motion.touch.arms import arms_apart, embraced
 from motion.transforms import heading_matrix
-from tests.motion.bodies import bone_lengths
 
 J = SMPL22.index
 FRAMES = 120

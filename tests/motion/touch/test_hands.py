@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from motion import SMPL22
+from motion.kinematics import bone_lengths
 from motion.limbs import solve_two_bones
 from motion.metrics.quality import DEEP, limb_depth
 from motion.touch.hands import APART, GRIP, PALM, PALMS_APART, backs_straight, hands_clasped, palms_met
 from motion.transforms import heading_matrix
-from tests.motion.bodies import bone_lengths
 
 J = SMPL22.index
 FRAMES = 80

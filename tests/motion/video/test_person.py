@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from motion import Duet, InputError
 from motion.cleaning import foot_contacts
+from motion.kinematics import bone_lengths
 from motion.metrics.quality import foot_skate
 from motion.transforms import resample
 from motion.video import Landmarks, person_of
 from motion.video.landmarks import INDEX
 from motion.video.place import focal_length, translation
-from tests.motion.bodies import bone_lengths
 
 from .filming import film, stepping
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from motion.kinematics import forward_kinematics
+from motion.kinematics import bone_lengths, forward_kinematics
 from motion.skeleton import SMPL22
-from tests.motion.bodies import bone_lengths
 from training.corpus.beats import script
 from training.corpus.beats.acts import ACTS
 from training.corpus.beats.play import Play

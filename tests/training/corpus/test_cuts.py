@@ -9,10 +9,10 @@ from scipy.spatial.transform import Rotation
 
 from motion import Duet
 from motion.formats.glb_writer import glb_bytes
-from motion.kinematics import forward_kinematics
+from motion.kinematics import bone_lengths, forward_kinematics
 from motion.retarget import retarget
 from motion.skeleton import SMPL22
-from tests.motion.bodies import bone_lengths, marching
+from tests.motion.bodies import marching
 from training.corpus import sources
 from training.corpus.beats.script import MENU
 from training.corpus.sources import load_sources, read_deepmimic

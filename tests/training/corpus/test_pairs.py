@@ -8,10 +8,9 @@ import pytest
 from scipy.io import savemat
 from scipy.spatial.transform import Rotation
 
-from motion.kinematics import forward_kinematics
+from motion.kinematics import bone_lengths, forward_kinematics
 from motion.skeleton import K3HI15, LAYOUTS, SBU15, SMPL22, Skeleton
 from motion.transforms import heading_matrix
-from tests.motion.bodies import bone_lengths
 from training.corpus.kinect import RELEASES, read_release, unswap
 from training.corpus.pairs import Pair, as_seen, load_pairs, scenes_of
 
