@@ -129,7 +129,7 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
     several = _VERB.findall(caption)
     said_verbs = [_lemma(t, parsed) for t in within if t.pos_ in ("VERB", "NOUN")]
     if (handled and not parts and not act.part) or not set(entry.loose).isdisjoint(said_verbs):
-        return False  # "sets her down" is not "puts both hands on B's waist"
+        return False  # "supports her" is not "puts both hands on B's shoulders"
     if len(several) > 1 and not all(
         verb in said_verbs or any(_alike(own, (verb,), ()) for own in said_verbs) for verb in several
     ):
