@@ -425,6 +425,7 @@ def thrust(both: np.ndarray, metres: float, up: float = -0.1) -> None:
         ),
         ("swing-sword", for_a_while(lambda both, up: thrust(both, 0.4, up), 6), 0.35, 0.2),
         ("catch-thing", for_a_while(lambda both, ahead: hands(both, ahead, 0.1)), 0.28, 0.24),
+        ("shake-hands", lambda frames: for_a_while(bumped, int(frames))(0.05), 17, 12),
         ("fist-bump", for_a_while(bumped), 0.12, 0.2),
         ("hip-bump", beside, 0.36, 0.4),
         ("crawl", lambda up: duet(lambda both: crawling(both, up), gap=3.0), 0.1, 0.6),
