@@ -53,7 +53,8 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
     leaves = names & {"backs", "turns_away"} and act.direction in ("away", "back")  # "backs away"
     leaves = leaves or (act.direction == "back" and not goes and "{b}" in caption)  # "hits back": in return
-    own = act.direction in said_words((*entry.frames, *entry.caption)) and act.direction in ("up", "down", "out")
+    named = {vocabulary().directions.get(word) for word in said_words((*entry.frames, *entry.caption))}
+    own = act.direction in named and act.direction in ("up", "down", "out")
     own = own or (act.direction == "away" and re.search(r"\boff\b", said) is not None)  # "takes off his shoes"
     if act.direction is not None and act.direction not in words and "way" not in names and not (own or leaves):
         yield "which way", _goes_way(act, who) if goes else ""

@@ -49,7 +49,7 @@ def test_what_an_act_waits_for_comes_after_what_is_told_before(words: str) -> No
     [
         ("They argue, she turns away.", "after"),
         ("A kicks the ball, B dives.", "after"),
-        ("A kicks the ball and B dives.", "with"),
+        ("A kicks the ball and B jumps.", "with"),
         ("A kicks the ball while B dives.", "while"),
         ("A punches, B ducks.", "with"),
     ],
