@@ -8,6 +8,7 @@ who touches is led to where they reach the other, and the hand is given.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 
 import numpy as np
 
@@ -46,8 +47,8 @@ _ARM = 0.45
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
 _TRUNK = 0.47
 """Metres from the pelvis to the line of the shoulders."""
-_HIP, _KNEELING = 0.93, float(kneeling(np.zeros(2), 0.0)[0, 1])
-"""Height in metres of the pelvis of a person who stands, and who kneels."""
+_HIP = 0.93
+"""Height in metres of the pelvis of a person who stands."""
 _DOWN = 0.33
 """Metres that the hand of a person who kneels is below their shoulder."""
 _FLAT = 0.3
@@ -68,6 +69,12 @@ LOWERS = 24
 """Frames in which a hand that has patted somebody's back goes down."""
 
 
+@cache
+def _kneeling() -> float:
+    """The height in metres of the pelvis of a person who kneels."""
+    return float(kneeling(np.zeros(2), 0.0)[0, 1])
+
+
 def kneels(touch: Touch, pose: Array) -> bool:
     """True for a place of a pose (22, 3) so low that the person who touches it kneels down to it."""
     return float(middle(touch, pose)[1]) < LOWEST and not touch.fells
@@ -76,7 +83,7 @@ def kneels(touch: Touch, pose: Array) -> bool:
 def beside(pose: Array, place: Array) -> float | None:
     """The heading across a person's lying body (22, 3), from the side of a place (2,); None if they do not lie."""
     body = np.asarray(pose)[JOINT["head"]] - pose[0]
-    if abs(body[1]) > _FLAT or pose[0][1] > _KNEELING:
+    if abs(body[1]) > _FLAT or pose[0][1] > _kneeling():
         return None
     across = np.array([body[2], -body[0]])
     side = 1.0 if across @ (np.asarray(pose)[0][[0, 2]] - place) >= 0 else -1.0
@@ -123,7 +130,7 @@ def _goes_round(touch: Touch) -> bool:
 def lean(touch: Touch, pose: Array) -> float:
     """Radians by which a person leans forward to touch the other, whose pose (22, 3) is given."""
     if kneels(touch, pose):
-        over = float(middle(touch, pose)[1]) + _DOWN - _KNEELING
+        over = float(middle(touch, pose)[1]) + _DOWN - _kneeling()
         return float(np.arccos(np.clip(over / _TRUNK, 0.2, 1.0)))
     least = 0.05 if touch.sides else 0.15
     return float(np.clip(0.1 + 1.2 * (1.3 - middle(touch, pose)[1]), least, 1.0))
