@@ -106,7 +106,7 @@ def _on_side(act: Act, entry: Entry, who: str) -> str:
 
 def body_part(act: Act) -> str:
     """The part of the body that an act names, as rules name it; "" where it names none."""
-    return next((name for name in (act.part, vocabulary().part(act.part or "")) if name in BODY), "")
+    return next((name for name in (act.part or "", vocabulary().part(act.part or "")) if name in BODY), "")
 
 
 def _goes_way(act: Act, who: str) -> str:
