@@ -243,8 +243,8 @@ TASKS = (
     Task("See what comes next", _next, 1),
     Task("Compare four versions side by side", _side_by_side, 2),
     Task("Tell a story of three beats", _story, 3),
-    Task("Correct a hand at a moment of it", _correct, 4),
+    Task("Correct a hand at one moment", _correct, 4),
     Task("Send a film of my corrected scene to a colleague", _send, 1),
     Task("Find an act by its name", _find, 3),
-    Task("Open a motion of before", _open_again, 2),
+    Task("Open an earlier motion", _open_again, 2),
 )
