@@ -109,16 +109,12 @@ def test_the_same_command_gives_the_same_bytes(run: Run, tmp_path: Path) -> None
     ("words", "says"),
     [
         (["--prompt", ""], "prompt is empty"),
-        (["--seconds", "0"], "seconds"),
         (["--seconds", "soon"], "invalid float"),
-        (["--seconds", "nan"], "seconds"),
         (["--steps", "0"], "steps"),
         (["--samples", "0"], "sample"),
         (["--guidance", "inf"], "uidance"),
-        (["--damping", "2"], "amping"),
         (["--sampler", "magic"], "sampler"),
         (["--model", "magic"], "model"),
-        (["--out", "duet.xyz"], "cannot be written"),
         (["--out", "duet"], "cannot be written"),
         (["--colour", "red"], "see `python -m webdemo"),
     ],
@@ -131,16 +127,13 @@ def test_bad_values_are_one_line_and_leave_no_file(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("suffix", [".npz", ".bvh", ".glb"])
-def test_a_full_disk_is_one_line_and_leaves_no_file(
-    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
-) -> None:
+def test_a_full_disk_is_one_line_and_leaves_no_file(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(path: Path, data: bytes) -> int:
         path.open("wb").write(data[:10])
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(Path, "write_bytes", full)
-    assert "the disk is full" in refused(generate(run, tmp_path / f"duet{suffix}"))
+    assert "the disk is full" in refused(generate(run, tmp_path / "duet.bvh"))
     assert list(tmp_path.iterdir()) == []
 
 

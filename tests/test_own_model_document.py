@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import shlex
-import socket
 import subprocess
 import sys
 import time
@@ -17,6 +16,7 @@ from pathlib import Path
 import pytest
 
 from motion import InputError
+from tests.server.lab import free_port
 from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.methods import failed, method, methods, register_settings
@@ -62,9 +62,7 @@ def test_the_commands_of_the_document_work(folder: Path, capsys: pytest.CaptureF
 
 def test_the_page_of_the_document_shows_the_toy(folder: Path) -> None:
     (serve,) = [shlex.split(command) for command in COMMANDS if command.endswith("serve")]
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = free_port()
     command = [sys.executable, *serve[1:], "--port", str(port)]
     environment = {"PYTHONPATH": str(ROOT), "XDG_DATA_HOME": str(folder / "data"), "PATH": "/usr/bin:/bin"}
     with subprocess.Popen(command, cwd=folder, env=environment, stderr=subprocess.PIPE, text=True) as server:

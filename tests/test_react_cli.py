@@ -113,8 +113,6 @@ def test_the_other_person_of_a_file_says_where_to_begin(
         (["--person", "a", "--end", "0.5"], "0.50 s: give 1 s or more"),
         (["--person", "a", "--start", "9"], "after the end of the motion"),
         (["--person", "a", "--model", "intergen", "--mode", "online"], "choose offline"),
-        (["--person", "a", "--model", "regennet", "--sampler", "dpm++"], "does not sample with dpm++: choose ddim"),
-        (["--person", "a", "--role", "x"], "Role 'x'"),
         (["--person", "a", "--steps", "0"], "DDIM steps"),
         (["--actor", "none.bvh"], "cannot be read"),
         (["--actor", "none.mov"], "cannot be read: use"),

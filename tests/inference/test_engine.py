@@ -1,8 +1,8 @@
 """The engine's promises: true steps, one result, cancel within a step, same bytes for the same request."""
 
 import shutil
-import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -92,12 +92,9 @@ def test_what_cannot_be_shown_is_said(engine: Engine) -> None:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"prompt": "  "}, "empty"),
         ({"seconds": float("nan")}, "Length"),
-        ({"steps": 2.5}, "whole number"),
         ({"seed": "one"}, "Seed"),
         ({"damping": 1.5}, "Damping"),
-        ({"model": "nonesuch"}, "no model"),
         ({"sampler": "euler"}, "Sampler"),
     ],
 )
@@ -131,9 +128,6 @@ def test_missing_or_altered_weights_are_refused(weights: Path, tmp_path: Path, n
 def test_two_threads_warm_up_once(monkeypatch: pytest.MonkeyPatch) -> None:
     engine, runs = Engine(), []
     monkeypatch.setattr(engine, "run", lambda request: (time.sleep(0.1), runs.append(request), iter(()))[2])
-    threads = [threading.Thread(target=engine.warm_up) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(lambda _: engine.warm_up(), range(2)))
     assert len(runs) == 1

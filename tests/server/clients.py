@@ -6,7 +6,7 @@ import json
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from webdemo.server.serve import make_server
 from webdemo.server.settings import Settings
 from webdemo.server.store.database import Database
 
-from .lab import stub_module
+from .lab import free_port, stub_module
 
 JOIN, UPLOAD, CALL = "/gradio_api/queue/join", "/gradio_api/upload", "/gradio_api/call"
 HERE = "http://127.0.0.1"
@@ -93,13 +93,11 @@ def no_room(database: Database) -> Iterator[None]:
 
 
 @contextmanager
-def served_on_loopback(settings_folder: Path, **fields: Any) -> Iterator[tuple[str, int]]:
+def served_on_loopback(settings_folder: Path, *, engine: Any = None, **fields: Any) -> Iterator[tuple[str, int]]:
     """A server on a real socket, in a thread."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     settings = settings_for(settings_folder, port=port, **fields)
-    server = make_server(settings, engine=stub_module().StubEngine())
+    server = make_server(settings, engine=engine or stub_module().StubEngine())
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
     until = time.monotonic() + 120
@@ -110,6 +108,23 @@ def served_on_loopback(settings_folder: Path, **fields: Any) -> Iterator[tuple[s
     server.should_exit = True
     thread.join(timeout=60)
     assert not thread.is_alive()
+
+
+class Clock:
+    """A time that a test sets."""
+
+    now = 1e6
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def wait_for(condition: Callable[[], Any]) -> None:
+    """Returns once a condition holds, within a minute."""
+    until = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < until
+        time.sleep(0.005)
 
 
 def read_all(connection: socket.socket) -> bytes:

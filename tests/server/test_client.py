@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import socket
-import threading
 import time
 from collections.abc import Iterator
 from functools import partialmethod
@@ -17,40 +15,29 @@ from gradio_client import Client
 from gradio_client.exceptions import AppError, AuthenticationError
 
 from webdemo.inference.run import Result
-from webdemo.server.serve import make_server
-from webdemo.server.settings import Settings
 
+from .clients import served_on_loopback
 from .lab import ROOT, add_accounts, stub_module
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("own_temporary")]
+
+
+class Engine(stub_module().StubEngine):  # type: ignore[misc]  # made by a path
+    """The stub engine, whose results name their weights."""
+
+    def run(self, request: Any, cancel: Any = None) -> Iterator[Any]:
+        for event in super().run(request, cancel):
+            if isinstance(event, Result):
+                event.manifest["weights_sha256"] = "0" * 64
+            yield event
 
 
 @pytest.fixture(scope="module")
 def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     folder = tmp_path_factory.mktemp("lab")
     add_accounts(folder / "data", "ada")
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    settings = Settings(port=port, data=folder / "data", accounts=True, free_megabytes=0)
-
-    class Engine(stub_module().StubEngine):  # type: ignore[misc]  # made by a path
-        def run(self, request: Any, cancel: Any = None) -> Iterator[Any]:
-            for event in super().run(request, cancel):
-                if isinstance(event, Result):
-                    event.manifest["weights_sha256"] = "0" * 64
-                yield event
-
-    server = make_server(settings, engine=Engine(pause=0.02))
-    thread = threading.Thread(target=server.run, daemon=True)
-    thread.start()
-    until = time.monotonic() + 120
-    while not server.started:
-        assert time.monotonic() < until
-        time.sleep(0.05)
-    yield settings.url
-    server.should_exit = True
-    thread.join(timeout=60)
+    with served_on_loopback(folder, engine=Engine(pause=0.02), accounts=True) as (host, port):
+        yield f"http://{host}:{port}/"
 
 
 def test_generate_from_a_notebook(url: str, tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from tests.server.lab import ROOT
+from tests.server.lab import ROOT, free_port
 from webdemo.server.accounts.accounts import Accounts
 from webdemo.server.store.database import Database
 
@@ -34,9 +34,7 @@ class Confined:
     """The program below bubblewrap, which mounts everything that it may write to anew: nothing of this machine."""
 
     def __init__(self, folder: Path) -> None:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        port = free_port()
         self.url = f"http://127.0.0.1:{port}"
         self.told = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self.told.bind(f"\0pas-de-deux {port}")

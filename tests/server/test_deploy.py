@@ -16,7 +16,7 @@ import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from tests.server.queue.test_queue import wait_for
+from tests.server.clients import wait_for
 from webdemo.server.process import SILENT_SECONDS
 from webdemo.server.settings import PREFIX, read_settings
 

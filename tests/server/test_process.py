@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -22,9 +21,8 @@ from webdemo.server.store.storage import Storage
 from webdemo.ui.history import Search
 
 from .attacks.target import Target
-from .clients import FIELDS, answer_of
-from .lab import ROOT
-from .queue.test_queue import wait_for
+from .clients import FIELDS, answer_of, wait_for
+from .lab import ROOT, free_port
 
 pytestmark = pytest.mark.slow
 CALL = "/gradio_api/call/generate"
@@ -47,9 +45,7 @@ class Process:
     """The program itself on a free port, watched."""
 
     def __init__(self, data: Path) -> None:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        port = free_port()
         self.url, self.data = f"http://127.0.0.1:{port}", data
         env = os.environ | {
             "PASDEDEUX_GRACE_SECONDS": "120",

@@ -14,7 +14,7 @@ import gradio.routes
 import httpx
 import pytest
 
-from tests.server.queue.test_queue import wait_for
+from tests.server.clients import wait_for
 from webdemo.server.serve import FILES, with_room_for_files
 from webdemo.server.settings import Settings
 from webdemo.server.store.scratch import UPLOADS as KEPT

@@ -68,10 +68,8 @@ def test_a_class_is_enough_too(client: Client) -> None:
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
-        ({"prompt": ""}, "The prompt is empty: say in a sentence what the two people do."),
         ({"prompt": "x" * 10_000}, "The prompt has 10,000 characters: shorten it to 500 or fewer."),
         ({"prompt": "x", "seed": 1.5}, "Seed must be a whole number from 0 to 4,294,967,295, not 1.5."),
-        ({"prompt": "x", "sampler": "euler"}, "Sampler 'euler' is not known: choose one of ddim, dpm++."),
         ({"prompt": "crash"}, "Something went wrong inside the program (RuntimeError); its log says more. Try again."),
     ],
 )
@@ -90,18 +88,8 @@ def test_a_scene_without_a_story_is_one_sentence(client: Client) -> None:
 def test_the_endpoint_is_documented(client: Client) -> None:
     endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/generate"]
     parameters = {p["parameter_name"]: p for p in endpoint["parameters"]}
-    assert list(parameters) == [
-        "prompt",
-        "seconds",
-        "seed",
-        "samples",
-        "guidance",
-        "steps",
-        "damping",
-        "sampler",
-        "model",
-        "tries",
-    ]
+    takes = "prompt seconds seed samples guidance steps damping sampler model tries"
+    assert list(parameters) == takes.split()
     assert all(p["parameter_has_default"] for name, p in parameters.items() if name != "prompt")
     assert "two-person .npz" in endpoint["description"]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import gradio as gr
@@ -27,13 +28,10 @@ def test_one_persons_files_are_read_one_after_the_other() -> None:
             reading -= 1
         raise InputError("The file is empty.")
 
-    def ask() -> None:
+    def ask(_: int) -> None:
         with pytest.raises(gr.Error, match="The file is empty"):
             GenerateEndpoint(None)._answer(read, "x", PROGRESS, reads=True)  # type: ignore[arg-type]  # no run is begun
 
-    threads = [threading.Thread(target=ask) for _ in range(20)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with ThreadPoolExecutor(20) as people:
+        list(people.map(ask, range(20)))
     assert most == 1

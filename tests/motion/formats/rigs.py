@@ -7,121 +7,66 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22
 
+_CENTRE = ("pelvis", "spine1", "spine2", "spine3", "neck", "head")
 _SIDED = ("collar", "shoulder", "elbow", "wrist", "hip", "knee", "ankle", "foot")
 
 
-def _rig(centre: dict[str, str], limbs: tuple[str, ...], side: str) -> dict[str, str]:
-    """Names by SMPL22's names; ``side`` is a pattern with {side} (Left/left/L/l) and {part}."""
-    names = dict(centre)
+def _rig(centre: str, limbs: str, side: str, before: str = "") -> dict[str, str]:
+    """Names by SMPL22's names.
+
+    Args:
+        centre: from pelvis to head, "-" for a joint that the rig lacks.
+        limbs: the parts of a side, from collar to wrist and from hip to foot.
+        side: a pattern with {part} and {Side} (Left), {S} (L), {s} (l) or {字} (左).
+        before: what the names of the centre begin with.
+    """
+    names = dict(zip(_CENTRE, (f"{before}{name}" * (name != "-") for name in centre.split()), strict=True))
     for which in ("left", "right"):
-        for part, name in zip(_SIDED, limbs, strict=True):
-            names[f"{which}_{part}"] = side.format(
-                Side=which.title(), side=which, S=which[0].upper(), s=which[0], part=name
-            )
-    return names
+        sided = {
+            "Side": which.title(),
+            "S": which[0].upper(),
+            "s": which[0],
+            "字": {"left": "左", "right": "右"}[which],
+        }
+        for part, name in zip(_SIDED, limbs.split(), strict=True):
+            names[f"{which}_{part}"] = side.format(**sided, part=name)
+    return {ours: theirs for ours, theirs in names.items() if theirs}
 
 
-def _centre(*names: str) -> dict[str, str]:
-    return dict(zip(("pelvis", "spine1", "spine2", "spine3", "neck", "head"), names, strict=True))
-
-
-_MIXAMO_LIMBS = ("Shoulder", "Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot", "ToeBase")
-
+_SPINE, _LIMBS = "Hips Spine Spine1 Spine2 Neck Head", "Shoulder Arm ForeArm Hand UpLeg Leg Foot ToeBase"
+_GENESIS = "hip abdomenLower chestLower chestUpper neckLower head"
+_SUFFIXED = "Hips_Bob Spine_Bob Spine1_Bob Spine2_Bob Neck_Bob Head_Bob"
+_UPPER = "Shoulder UpperArm LowerArm Hand UpperLeg LowerLeg Foot Toes"
+_JOINTS = "Collar Shoulder Elbow Wrist Hip Knee Ankle"
+_STRETCHED = "shoulder arm_stretch forearm_stretch hand thigh_stretch leg_stretch foot toes_01"
+_BENT = "Collar ShldrBend ForearmBend Hand ThighBend Shin Foot Toe"
+_UNREAL = "clavicle upperarm lowerarm hand thigh calf foot ball"
+_BIPED = "Clavicle UpperArm Forearm Hand Thigh Calf Foot Toe0"
 RIGS = {
-    "bandai-namco": _rig(
-        {"pelvis": "Hips", "spine1": "Spine", "spine3": "Chest", "neck": "Neck", "head": "Head"},
-        ("Shoulder", "UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot", "Toes"),
-        "{part}_{S}",
-    ),
-    "mixamo": _rig(
-        {
-            "pelvis": "mixamorig:Hips",
-            "spine1": "mixamorig:Spine",
-            "spine2": "mixamorig:Spine1",
-            "spine3": "mixamorig:Spine2",
-            "neck": "mixamorig:Neck",
-            "head": "mixamorig:Head",
-        },
-        _MIXAMO_LIMBS,
-        "mixamorig:{Side}{part}",
-    ),
-    "motionbuilder": _rig(
-        _centre("Hips", "Spine", "Spine1", "Spine2", "Neck", "Head"),
-        ("Shoulder", "Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot", "Toe"),
-        "{Side}{part}",
-    ),
+    "bandai-namco": _rig("Hips Spine - Chest Neck Head", _UPPER, "{part}_{S}"),
+    "mixamo": _rig(_SPINE, _LIMBS, "mixamorig:{Side}{part}", "mixamorig:"),
+    "motionbuilder": _rig(_SPINE, _LIMBS.replace("ToeBase", "Toe"), "{Side}{part}"),
     "cmu": _rig(
-        _centre("root", "lowerback", "upperback", "thorax", "lowerneck", "head"),
-        ("clavicle", "humerus", "radius", "wrist", "femur", "tibia", "foot", "toes"),
+        "root lowerback upperback thorax lowerneck head",
+        "clavicle humerus radius wrist femur tibia foot toes",
         "{s}{part}",
     ),
-    "xsens": _rig(
-        _centre("Hips", "Chest", "Chest2", "Chest4", "Neck", "Head"),
-        ("Collar", "Shoulder", "Elbow", "Wrist", "Hip", "Knee", "Ankle", "Toe"),
-        "{Side}{part}",
-    ),
+    "xsens": _rig("Hips Chest Chest2 Chest4 Neck Head", f"{_JOINTS} Toe", "{Side}{part}"),
     "rokoko": _rig(
-        _centre("Hips", "Spine1", "Spine2", "Spine4", "Neck", "Head"),
-        ("Shoulder", "Arm", "ForeArm", "Hand", "Thigh", "Shin", "Foot", "Toe"),
-        "{Side}{part}",
+        "Hips Spine1 Spine2 Spine4 Neck Head", "Shoulder Arm ForeArm Hand Thigh Shin Foot Toe", "{Side}{part}"
     ),
     "reactidle": _rig(
-        {"pelvis": "pelvis", "spine1": "spine", "spine3": "spine.001", "neck": "neck", "head": "face"},
-        ("shoulder", "upper_arm", "forearm", "hand", "thigh", "shin", "foot", "toe"),
-        "{part}.{S}",
+        "pelvis spine - spine.001 neck face", "shoulder upper_arm forearm hand thigh shin foot toe", "{part}.{S}"
     ),
-    "unreal": _rig(
-        _centre("pelvis", "spine_01", "spine_02", "spine_03", "neck_01", "head"),
-        ("clavicle", "upperarm", "lowerarm", "hand", "thigh", "calf", "foot", "ball"),
-        "{part}_{s}",
-    ),
-    "biped": _rig(
-        _centre("Bip01 Pelvis", "Bip01 Spine", "Bip01 Spine1", "Bip01 Spine2", "Bip01 Neck", "Bip01 Head"),
-        ("Clavicle", "UpperArm", "Forearm", "Hand", "Thigh", "Calf", "Foot", "Toe0"),
-        "Bip01 {S} {part}",
-    ),
-    "kinect": _rig(
-        {"pelvis": "SpineBase", "spine3": "SpineMid", "neck": "Neck", "head": "Head"},
-        ("Collar", "Shoulder", "Elbow", "Wrist", "Hip", "Knee", "Ankle", "Foot"),
-        "{part}{Side}",
-    ),
-    "optitrack": _rig(
-        {"pelvis": "Hip", "spine1": "Ab", "spine3": "Chest", "neck": "Neck", "head": "Head"},
-        ("Shoulder", "UArm", "FArm", "Hand", "Thigh", "Shin", "Foot", "Toe"),
-        "{S}{part}",
-    ),
-    "daz-genesis-8": _rig(
-        _centre("hip", "abdomenLower", "chestLower", "chestUpper", "neckLower", "head"),
-        ("Collar", "ShldrBend", "ForearmBend", "Hand", "ThighBend", "Shin", "Foot", "Toe"),
-        "{s}{part}",
-    ),
-    "auto-rig": _rig(
-        _centre("root.x", "spine_01.x", "spine_02.x", "spine_03.x", "neck.x", "head.x"),
-        ("shoulder", "arm_stretch", "forearm_stretch", "hand", "thigh_stretch", "leg_stretch", "foot", "toes_01"),
-        "{part}.{s}",
-    ),
-    "a prefix": _rig(
-        _centre("Zoë Hips", "Zoë Spine", "Zoë Spine1", "Zoë Spine2", "Zoë Neck", "Zoë Head"),
-        _MIXAMO_LIMBS,
-        "Zoë{Side}{part}",
-    ),
-    "a suffix": _rig(
-        _centre("Hips_Bob", "Spine_Bob", "Spine1_Bob", "Spine2_Bob", "Neck_Bob", "Head_Bob"),
-        _MIXAMO_LIMBS,
-        "{Side}{part}_Bob",
-    ),
-    "mikumikudance": {
-        "pelvis": "センター",
-        "spine1": "上半身",
-        "spine3": "上半身2",
-        "neck": "首",
-        "head": "頭",
-        **{
-            f"{side}_{part}": letter + name
-            for side, letter in (("left", "左"), ("right", "右"))
-            for part, name in zip(_SIDED, ("肩", "腕", "ひじ", "手首", "足", "ひざ", "足首", "つま先"), strict=True)
-        },
-    },
+    "unreal": _rig("pelvis spine_01 spine_02 spine_03 neck_01 head", _UNREAL, "{part}_{s}"),
+    "biped": _rig("Pelvis Spine Spine1 Spine2 Neck Head", _BIPED, "Bip01 {S} {part}", "Bip01 "),
+    "kinect": _rig("SpineBase - - SpineMid Neck Head", f"{_JOINTS} Foot", "{part}{Side}"),
+    "optitrack": _rig("Hip Ab - Chest Neck Head", "Shoulder UArm FArm Hand Thigh Shin Foot Toe", "{S}{part}"),
+    "daz-genesis-8": _rig(_GENESIS, _BENT, "{s}{part}"),
+    "auto-rig": _rig("root.x spine_01.x spine_02.x spine_03.x neck.x head.x", _STRETCHED, "{part}.{s}"),
+    "a prefix": _rig(_SPINE, _LIMBS, "Zoë{Side}{part}", "Zoë "),
+    "a suffix": _rig(_SUFFIXED, _LIMBS, "{Side}{part}_Bob"),
+    "mikumikudance": _rig("センター 上半身 - 上半身2 首 頭", "肩 腕 ひじ 手首 足 ひざ 足首 つま先", "{字}{part}"),
 }
 
 

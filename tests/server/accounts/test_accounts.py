@@ -14,8 +14,8 @@ from sqlalchemy import update
 from starlette.responses import Response
 
 from motion import InputError
+from tests.server.clients import Clock
 from tests.server.lab import stub_module
-from tests.server.live.test_streams import Clock
 from webdemo.cli import main
 from webdemo.inference.requests import GenerateRequest
 from webdemo.server.accounts import accounts

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 
-from tests.server.clients import HERE, settings_for
+from tests.server.clients import HERE, Clock, settings_for
 from tests.server.lab import stub_module
 from webdemo.server.accounts import quotas
 from webdemo.server.accounts.quotas import OverQuota, Quota, Quotas, RateLimit, network_of
@@ -34,15 +34,6 @@ def test_quotas_are_those_of_the_settings(tmp_path: Path) -> None:
     assert (found.waiting.person, found.waiting.address, found.waiting.everybody) == (3, 6, 64)
     assert (found.live.person, found.live.address, found.live.everybody) == (1, 3, 6)
     assert found.room.person < found.room.everybody
-
-
-class Clock:
-    """A time that a test sets."""
-
-    now = 1e6
-
-    def __call__(self) -> float:
-        return self.now
 
 
 @pytest.fixture

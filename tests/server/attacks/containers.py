@@ -13,20 +13,8 @@ from tests.motion.formats.arrays import npy
 from tests.motion.formats.characters import packed, unpacked
 
 NUMBERS = (-1, 0, 1, 2**31, 2**63, -(2**31), 0.5, 1e308, float("nan"), float("inf"))
-OTHERS: tuple[Any, ...] = (
-    10**400,
-    None,
-    True,
-    "",
-    "x" * 5000,
-    [],
-    {},
-    [[]],
-    {"0": 0},
-    [0] * 1000,
-    "data:,x",
-    "../canary.txt",
-)
+OTHERS: tuple[Any, ...] = (10**400, None, True, "", "x" * 5000, [], {}, [[]], {"0": 0}, [0] * 1000, "data:,x")
+OTHERS += ("../canary.txt",)
 SHAPES = ((0,), (1,), (2, 0, 22, 3), (2, 4, 22, 2), (1, 1, 1, 1, 1), (3, 30, 22, 3), (22, 3))
 KINDS = (np.float64, np.int8, np.uint64, np.complex64, bool, "S3", "U2", "datetime64[s]")
 

@@ -12,8 +12,11 @@ from typing import Any
 from ..clients import FIELDS, PREDICT
 
 API = "/gradio_api"
-FORM = "multipart/form-data; boundary=x"
+FORM, FIELDS_OF_A_FORM = "multipart/form-data; boundary=x", {"content-type": "application/x-www-form-urlencoded"}
 NO_COOKIE = {"cookie": 'pasdedeux_session=\x01; a="b'}
+EVIL, OWN_PAGE, HTML = {"origin": "https://evil.example"}, {"origin": "{here}"}, {"accept": "text/html"}
+STRANGER: dict[str, Any] = {"who": "stranger"}
+SIGNED_OUT = STRANGER | {"at": "closed"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,12 +48,18 @@ class Attack:
     holds: str = ""
 
 
+def asked(name: str, line: str, *expected: int, **more: Any) -> Attack:
+    """A request by its method and path."""
+    method, path = line.split(" ", 1)
+    return Attack(name=name, method=method, path=path, expected=expected, **more)
+
+
 def get(name: str, path: str, *expected: int, **more: Any) -> Attack:
-    return Attack(name=name, path=path, expected=expected, **more)
+    return asked(name, f"GET {path}", *expected, **more)
 
 
 def post(name: str, path: str, *expected: int, **more: Any) -> Attack:
-    return Attack(name=name, path=path, method="POST", expected=expected, **more)
+    return asked(name, f"POST {path}", *expected, **more)
 
 
 def part(disposition: str, content: str = "HIERARCHY", kind: str = "application/octet-stream") -> bytes:
@@ -59,51 +68,30 @@ def part(disposition: str, content: str = "HIERARCHY", kind: str = "application/
     return f"{head}{content}\r\n--x--\r\n".encode()
 
 
-def upload(name: str, content: bytes, *expected: int, kind: str = FORM, **more: Any) -> Attack:
-    return post(name, f"{API}/upload", *expected, content=content, headers={"content-type": kind}, **more)
+def upload(name: str, content: bytes, *expected: int, kind: str = FORM, path: str = "upload", **more: Any) -> Attack:
+    return post(name, f"{API}/{path}", *expected, content=content, headers={"content-type": kind}, **more)
 
 
 def call(name: str, data: Any, *expected: int, **more: Any) -> Attack:
     return post(name, f"{API}/call/generate", *expected, body={"data": data}, **more)
 
 
-OWN = {"session_hash": "eves own", "fn_index": 1}
+OWN, HERS = ({"session_hash": session, "fn_index": 1} for session in ("eves own", "{session}"))
+HER_COMPONENT = {"session_hash": "{session}", "component_id": 1, "fn_name": "x", "data": []}
 OTHER_FILE = {"path": "{upload}", "meta": {"_type": "gradio.FileData"}}
 
 PATHS = [
     get(f"no file by {path}", path, 400, 403, 404)
-    for path in (
-        f"{API}/file=/etc/passwd",
-        f"{API}/file=../../etc/passwd",
-        f"{API}/file=%2e%2e/%2e%2e/etc/passwd",
-        f"{API}/file=/proc/self/environ",
-        f"{API}/file=https://example.invalid/x",
-        f"{API}/file=app.py",
-        f"{API}/file={{data}}/history.db",
-        f"{API}/file={{folder}}/users",
-        f"{API}/file={{canary}}",
-        f"{API}/file={{data}}/scratch/uploads/../../../../canary.txt",
-        f"{API}/file//etc/passwd",
-        f"{API}/proxy=https://example.invalid/",
-        f"{API}/proxy=http://127.0.0.1:9/",
-        "/a%00b",
-        f"{API}/stream/x/1/2/playlist.m3u8",
-        "/static/../app.py",
-        "/static/%2e%2e/%2e%2e/app.py",
-        "/..%5c..%5cx",
-        "/monitoring",
-        "/docs",
-        "/openapi.json",
-        f"{API}/openapi.json",
-        f"{API}/deep_link",
-        f"{API}/dev/reload",
-        f"{API}/vibe-code/",
-        f"{API}/runs",
-        f"{API}/run-history/records",
-        "/monitoring/x",
-        "/svelte/../../../etc/passwd",
-        f"{API}/custom_component/1/client/component/../../../../etc/passwd",
-    )
+    for path in f"""
+        {API}/file=/etc/passwd {API}/file=../../etc/passwd {API}/file=%2e%2e/%2e%2e/etc/passwd {API}/file//etc/passwd
+        {API}/file=/proc/self/environ {API}/file=https://example.invalid/x {API}/file=app.py {API}/file={{canary}}
+        {API}/file={{data}}/history.db {API}/file={{data}}/scratch/uploads/../../../../canary.txt
+        {API}/file={{folder}}/users {API}/proxy=https://example.invalid/ {API}/proxy=http://127.0.0.1:9/ /a%00b
+        {API}/stream/x/1/2/playlist.m3u8 /static/../app.py /static/%2e%2e/%2e%2e/app.py /..%5c..%5cx
+        /monitoring /monitoring/x /docs /openapi.json {API}/openapi.json {API}/deep_link {API}/dev/reload
+        {API}/vibe-code/ {API}/runs {API}/run-history/records /svelte/../../../etc/passwd
+        {API}/custom_component/1/client/component/../../../../etc/passwd {{here}}// {{here}}//config /static//x
+    """.split()
 ]
 
 OTHERS_THINGS = [
@@ -119,26 +107,10 @@ OTHERS_THINGS = [
     get("two sessions", f"{API}/queue/data?session_hash=x&session_hash={{session}}", 403, never=("SECRET",)),
     get("another's heartbeat", f"{API}/heartbeat/{{session}}", 403),
     get("a call that never was", f"{API}/call/generate/{'0' * 32}", 404),
-    post(
-        "a run in another's session",
-        f"{API}/queue/join",
-        403,
-        body={"session_hash": "{session}", "fn_index": 1, "data": FIELDS},
-    ),
-    post(
-        "the end of another's session",
-        f"{API}/cancel",
-        403,
-        body={"session_hash": "{session}", "fn_index": 1, "event_id": "x"},
-    ),
+    post("a run in another's session", f"{API}/queue/join", 403, body={**HERS, "data": FIELDS}),
+    post("the end of another's session", f"{API}/cancel", 403, body={**HERS, "event_id": "x"}),
     post("the end of another's call", f"{API}/cancel", 403, 404, body={**OWN, "event_id": "{call}"}),
-    post(
-        "another's component",
-        f"{API}/component_server",
-        403,
-        404,
-        body={"session_hash": "{session}", "component_id": 1, "fn_name": "x", "data": []},
-    ),
+    post("another's component", f"{API}/component_server", 403, 404, body=HER_COMPONENT),
 ]
 
 FORGED = [
@@ -158,6 +130,8 @@ FORGED = [
     post("the second kind of calls", f"{API}/call/v2/generate", 404, body={"prompt": "x"}),
     post("another function's values", f"{API}/call/render", 400, body={"data": ["/etc/passwd"], "fn_index": 6}),
     post("no such function", f"{API}/queue/join", 404, body={**OWN, "fn_index": 99_999, "data": []}),
+    post("a function before the first", f"{API}/queue/join", 404, body={**OWN, "fn_index": -1, "data": []}),
+    post("no such function by its name", f"{API}/run/nosuch", 404, body={"data": []}),
     post("a function by a text", f"{API}/run/predict", 404, body={"fn_index": "0", "data": []}),
     post("a function by a truth", f"{API}/queue/join", 404, body={**OWN, "fn_index": True, "data": []}),
     post("a session that is a number", f"{API}/queue/join", 400, body={"session_hash": 7, "data": []}),
@@ -166,329 +140,196 @@ FORGED = [
     post("an event that is a list", f"{API}/cancel", 400, body={**OWN, "event_id": []}),
     post("deep JSON", f"{API}/queue/join", 400, 413, content=b"[" * 200_000),
     post("JSON that is none", f"{API}/queue/join", 400, content=b"{"),
-    post(
-        "JSON in a form",
-        f"{API}/component_server",
-        400,
-        content=part('name="fn_name"', "x"),
-        headers={"content-type": FORM},
-    ),
+    upload("JSON in a form", part('name="fn_name"', "x"), 400, path="component_server"),
     post("a body of three megabytes", f"{API}/queue/join", 413, content=b" " * 3 * 2**20),
     get("an address of 5,000 letters", "/" + "a" * 5000, 414),
     get("sixty parameters", f"{API}/queue/data?" + "&".join(f"a{i}=1" for i in range(60)), 400, holds="many"),
-    get("a cookie that is none", "/config", 401, headers=NO_COOKIE, who="stranger", at="closed"),
-    get("a cookie that is none", "/config", 200, headers=NO_COOKIE, who="stranger", at="open", holds='"api_prefix"'),
+    get("a cookie that is none", "/config", 401, headers=NO_COOKIE, **SIGNED_OUT),
+    get("a cookie that is none", "/config", 200, headers=NO_COOKIE, **STRANGER, at="open", holds='"api_prefix"'),
 ]
 
+FILES = 'name="files"; filename='
 UPLOADS = [
-    upload("an upload without a name", part('name="files"; filename=""'), 200),
-    upload("an upload named by dots", part('name="files"; filename=".."'), 400),
-    upload("an upload named by signs", part('name="files"; filename="???"'), 200, 400),
+    upload("an upload without a name", part(f'{FILES}""'), 200),
+    upload("an upload named by dots", part(f'{FILES}".."'), 400),
+    upload("an upload named by signs", part(f'{FILES}"???"'), 200, 400),
     upload("an upload that is a text", part('name="files"'), 400),
     upload("an upload of another name", part('name="file"; filename="a.bvh"'), 200),
     upload("an upload without a part", b"--x--\r\n", 200),
-    upload("an upload that is cut short", part('name="files"; filename="a.bvh"')[:-6], 200),
+    upload("an upload that is cut short", part(f'{FILES}"a.bvh"')[:-6], 200),
     upload("an upload that is no form", b"HIERARCHY", 400, kind="text/plain"),
     upload("an upload without a boundary", b"HIERARCHY", 400, kind="multipart/form-data"),
-    upload(
-        "an upload in another alphabet",
-        part('name="files"; filename="\\ud800.bvh"'),
-        400,
-        kind=FORM + "; charset=unicode_escape",
-    ),
-    upload("an upload with a long head", part(f'name="files"; filename="{"a" * 20_000}.bvh"'), 400),
-    upload("many files", part('name="files"; filename="a.bvh"')[:-7].rstrip(b"-") * 20, 400),
-    upload("an upload with a path", part('name="files"; filename="../../../evil.bvh"'), 200, never=("..",)),
-    upload("a page as an upload", part('name="files"; filename="a.html"', "<script>alert(1)</script>"), 200),
+    upload("an upload in another alphabet", part(f'{FILES}"\\ud800.bvh"'), 400, kind=f"{FORM}; charset=unicode_escape"),
+    upload("an upload with a long head", part(f'{FILES}"{"a" * 20_000}.bvh"'), 400),
+    upload("many files", part(f'{FILES}"a.bvh"')[:-7].rstrip(b"-") * 20, 400),
+    upload("an upload with a path", part(f'{FILES}"../../../evil.bvh"'), 200, never=("..",)),
+    upload("a page as an upload", part(f'{FILES}"a.html"', "<script>alert(1)</script>"), 200),
 ]
 
+DELETE = b"act=delete&name=ada&confirm=ada"
 ADMIN = [
     get("the administrators' page", "/admin", 403, at="closed", holds="administrators"),
-    post(
-        "an act of administrators",
-        "/admin",
-        403,
-        at="closed",
-        headers={"origin": "{here}"},
-        content=b"act=delete&name=ada&confirm=ada",
-    ),
-    post("an act of administrators by a program", "/admin", 403, at="closed", content=b"act=delete&name=ada"),
+    post("an act of administrators", "/admin", 403, at="closed", headers=OWN_PAGE, content=DELETE),
+    post("an act of administrators by a program", "/admin", 403, at="closed", content=DELETE),
 ]
 
+ELSEWHERE = {"x-forwarded-host": "evil.example", "x-gradio-server": "http://evil.example"}
+SIGN_IN = b"username=ada&password=x"
 OTHER_SITES = [
-    post(f"another site's page, {name}", f"{API}/queue/join", 403, headers=headers, body={**OWN, "data": FIELDS})
+    post(
+        f"another site's page, {name}",
+        f"{API}/queue/join",
+        403,
+        headers=headers,
+        body={**OWN, "data": FIELDS},
+        holds="Another site's page",
+    )
     for name, headers in {
-        "by its origin": {"origin": "https://evil.example"},
+        "by its origin": EVIL,
         "without an origin": {"origin": "null"},
         "by what the browser says": {"sec-fetch-site": "cross-site"},
         "on another port": {"origin": "http://127.0.0.1:9"},
         "by a longer name": {"origin": "http://127.0.0.1.evil.example"},
     }.items()
 ] + [
-    post(
-        "another site signs somebody in",
-        "/login",
-        403,
-        at="closed",
-        who="stranger",
-        headers={"origin": "https://evil.example"},
-        content=b"username=ada&password=x",
-    ),
+    post("another site signs somebody in", "/login", 403, **SIGNED_OUT, headers=EVIL, content=SIGN_IN),
     get("another site reads", "/config", 200, headers={"origin": "http://localhost:3000"}),
-    Attack(
-        name="another site asks first",
-        method="OPTIONS",
-        path=f"{API}/queue/join",
-        expected=(400, 403, 405),
+    asked(
+        "another site asks first",
+        f"OPTIONS {API}/queue/join",
+        400,
+        403,
+        405,
         headers={"origin": "http://localhost:3000", "access-control-request-method": "POST"},
     ),
     get("another host's name", "/", 421, at="closed", headers={"host": "evil.example"}),
-    get("a host that is no address", "/", 400, headers={"host": "["}),
-    get(
-        "where the page is, by a header",
-        "/",
-        200,
-        headers={"x-forwarded-host": "evil.example", "x-gradio-server": "http://evil.example"},
-        never=("evil.example",),
+    get("a host that is no address", "/", 400, headers={"host": "["}, holds="not an address"),
+    post("an origin that is none", f"{API}/queue/join", 400, headers={"origin": "http://["}, body={}, holds="address"),
+    *(
+        get(f"where {path} is, by a header", path, 200, headers=ELSEWHERE, never=("evil.example",))
+        for path in ("/", "/config")
     ),
     get("signing out by a link", "/logout", 405, at="closed", who="ada"),
     get("still signed in", "/config", 200, at="closed", who="ada"),
 ]
 
-STRANGERS = (
-    [
-        get(f"a stranger at {path}", path, 401, at="closed", who="stranger")
-        for path in (
-            "/config",
-            f"{API}/info",
-            "/theme.css",
-            f"{API}/queue/data?session_hash=x",
-            f"{API}/file={{upload}}",
-            f"{API}/call/generate/{{call}}",
-            f"{API}/startup-events",
-        )
-    ]
-    + [
-        post(f"a stranger sends to {path}", path, 401, at="closed", who="stranger", body={"data": FIELDS})
-        for path in (f"{API}/queue/join", f"{API}/upload", f"{API}/call/generate", f"{API}/cancel", f"{API}/reset")
-    ]
-    + [
-        get(
-            "a made-up session",
-            "/config",
-            401,
-            at="closed",
-            who="stranger",
-            headers={"cookie": "pasdedeux_session=" + "A" * 43},
-        ),
-        get(
-            "a name as a session",
-            "/config",
-            401,
-            at="closed",
-            who="stranger",
-            headers={"cookie": "pasdedeux_session=user ada"},
-        ),
-        get(
-            "the figures from this machine",
-            "/metrics",
-            200,
-            who="stranger",
-            holds="pasdedeux_",
-            never=("password", "pasdedeux_session", "SECRET"),
-        ),
-        get(
-            "the figures from another machine",
-            "/metrics",
-            403,
-            who="stranger",
-            headers={"x-forwarded-for": "198.51.100.7"},
-            never=("pasdedeux_",),
-        ),
-    ]
-)
+FIGURES_NEVER, FORWARDED = ("password", "pasdedeux_session", "SECRET"), {"x-forwarded-for": "198.51.100.7"}
+STRANGERS = [
+    *(
+        get(f"a stranger at {path}", path, 401, **SIGNED_OUT)
+        for path in f"""
+            /config {API}/info /theme.css {API}/queue/data?session_hash=x {API}/file={{upload}}
+            {API}/call/generate/{{call}} {API}/startup-events
+        """.split()
+    ),
+    *(
+        post(f"a stranger sends to {API}/{path}", f"{API}/{path}", 401, **SIGNED_OUT, body={"data": FIELDS})
+        for path in ("queue/join", "upload", "call/generate", "cancel", "reset")
+    ),
+    *(
+        get(name, "/config", 401, **SIGNED_OUT, headers={"cookie": f"pasdedeux_session={session}"})
+        for name, session in {"a made-up session": "A" * 43, "a name as a session": "user ada"}.items()
+    ),
+    get("the figures from this machine", "/metrics", 200, **STRANGER, holds="pasdedeux_", never=FIGURES_NEVER),
+    get("the figures from another machine", "/metrics", 403, **STRANGER, headers=FORWARDED, never=("pasdedeux_",)),
+]
 
 SCRIPT = "<script>window.hacked=1</script>"
 SCRIPTS = [
-    get(
-        "a script in the sign-in page", f"/login?next=%22%3E{SCRIPT}", 200, at="closed", who="stranger", never=(SCRIPT,)
-    ),
+    get("a script in the sign-in page", f"/login?next=%22%3E{SCRIPT}", 200, **SIGNED_OUT, never=(SCRIPT,)),
     post(
         "a script as a name",
         "/login",
         401,
-        at="closed",
-        who="stranger",
+        **SIGNED_OUT,
         never=(SCRIPT,),
-        headers={"accept": "text/html", "content-type": "application/x-www-form-urlencoded"},
+        headers=HTML | FIELDS_OF_A_FORM,
         content=f"username={SCRIPT}&password=x".encode(),
     ),
-    get("a script in a path", f"/{SCRIPT}", 404, headers={"accept": "text/html"}, never=(SCRIPT,)),
-    get("a script in a run's key", f"/?run={SCRIPT}", 200, headers={"accept": "text/html"}, never=(SCRIPT,)),
+    get("a script in a path", f"/{SCRIPT}", 404, headers=HTML, never=(SCRIPT,)),
+    get("a script in a run's key", f"/?run={SCRIPT}", 200, headers=HTML, never=(SCRIPT,)),
 ]
 
-OWN_PAGE = {"origin": "{here}"}
-VOTE = "/study/{study_key}/vote/0/1"
+VOTE, NEXT = "/study/{study_key}/vote/0/1", "/study/{study_key}/next"
+PAIR_NEVER = ("SECRET", "manifest", "damped")
 STUDIES = [
     get("what is compared in a study", "/study/{study_key}", 200, holds="Which is longer?", never=("SECRET",)),
     get("a study by its id", "/study/{study}", 404, holds="no such study"),
     get("a study by another's run", "/study/{run}", 404, holds="no such study"),
-    get("a script in a study's key", f"/study/{SCRIPT}", 404, headers={"accept": "text/html"}, never=(SCRIPT,)),
+    get("a script in a study's key", f"/study/{SCRIPT}", 404, headers=HTML, never=(SCRIPT,)),
     get("a step out of a study", "/study/..%2f..%2fapp.py", 404),
     get("the motions of studies", f"{API}/file={{data}}/studies/{{study}}/0.npz", 403, 404, never=("PK",)),
-    post(
-        "what is compared in a pair",
-        "/study/{study_key}/next",
-        200,
-        headers=OWN_PAGE,
-        holds='"number"',
-        never=("SECRET", "manifest", "damped"),
-    ),
+    post("what is compared in a pair", NEXT, 200, headers=OWN_PAGE, holds='"number"', never=PAIR_NEVER),
     post("a vote by a program", VOTE, 403, holds="own page"),
-    post("a pair for a program", "/study/{study_key}/next", 403, holds="own page"),
+    post("a pair for a program", NEXT, 403, holds="own page"),
     post("a vote from another site", VOTE, 403, holds="Another site", headers={"origin": "https://example.invalid"}),
-    post("a vote by a stranger", VOTE, 401, who="stranger", at="closed", headers=OWN_PAGE),
-    post("a vote without a cookie", VOTE, 403, who="stranger", at="open", headers=OWN_PAGE, holds="cookie"),
+    post("a vote by a stranger", VOTE, 401, **SIGNED_OUT, headers=OWN_PAGE),
+    post("a vote without a cookie", VOTE, 403, **STRANGER, at="open", headers=OWN_PAGE, holds="cookie"),
     *(
         post(f"a vote that is {vote}", f"/study/{{study_key}}/vote/{vote}", 404, 422, headers=OWN_PAGE)
         for vote in ("x/1", "0/x", "-1/1", "9/1", "1e99/1", "0/..%2f..", "0/1/1")
     ),
 ]
 
+OUTSIDE = "share/page.html ../app.py player/../../app.py %2e%2e/app.py /etc/passwd {upload} {canary} player"
+PUBLIC_NEVER = ("user ada", "local", "manifest", "{run}", "{data}")
 PUBLIC_PAGES = [
-    get(
-        "a public page",
-        "/share/{public}",
-        200,
-        who="stranger",
-        holds="SECRET",
-        never=("user ada", "local", "manifest", "{run}", "{data}"),
-    ),
-    get("its player alone", "/embed/{public}", 200, who="stranger", holds="SECRET", never=("user ada", "{run}")),
     *(
-        get(f"a public page by {name}", f"/{kind}/{{{name}}}", 404, who="stranger", never=("SECRET",))
+        get(f"a public page, at {path}", f"{path}/{{public}}", 200, **STRANGER, holds="SECRET", never=PUBLIC_NEVER)
+        for path in ("/share", "/embed")
+    ),
+    *(
+        get(f"a public page by {name}", f"/{kind}/{{{name}}}", 404, **STRANGER, never=("SECRET",))
         for kind in ("share", "embed")
         for name in ("run", "study", "study_key", "session")
     ),
-    get(
-        "a script in a public page's key",
-        f"/share/{SCRIPT}",
-        404,
-        who="stranger",
-        never=(SCRIPT,),
-        headers={"accept": "text/html"},
-    ),
-    post("a change of a public page", "/share/{public}", 401, 404, 405, who="stranger", body={}),
-    get("a file of public pages", "/shown/player/main.js", 200, who="stranger", holds="export"),
+    get("a script in a public page's key", f"/share/{SCRIPT}", 404, **STRANGER, never=(SCRIPT,), headers=HTML),
+    post("a change of a public page", "/share/{public}", 401, 404, 405, **STRANGER, body={}),
+    get("a file of public pages", "/shown/player/main.js", 200, **STRANGER, holds="export"),
     *(
-        get(f"no file of public pages at {path}", f"/shown/{path}", 401, 404, who="stranger")
-        for path in (
-            "share/page.html",
-            "../app.py",
-            "player/../../app.py",
-            "%2e%2e/app.py",
-            "/etc/passwd",
-            "{upload}",
-            "{canary}",
-            "player",
-            "",
-        )
+        get(f"no file of public pages at {path}", f"/shown/{path}", 401, 404, **STRANGER)
+        for path in (*OUTSIDE.split(), "")
     ),
+    get("a name by a header of no setting's", "/config", 401, **SIGNED_OUT, headers={"x-remote-user": "ada"}),
 ]
 
-BY_HEADER = [
-    get(
-        "a name by a header that the settings do not name",
-        "/config",
-        401,
-        at="closed",
-        who="stranger",
-        headers={"x-remote-user": "ada"},
-    )
-]
-
+CLOSED = {
+    "GET": f"""
+        {API}/custom_component/1/client/component/x.js {API}/runs/ {API}/stream/{{session}}/1/1/playlist-file
+        {API}/vibe-code {API}/call/v2/generate/{{call}} /assets/../../app.py /pwa_icon /pwa_icon/7 /monitoring/summary
+    """,
+    "HEAD": f"/openapi.json {API}/proxy=http://127.0.0.1:9/",
+    "POST": f"""
+        {API}/process_recording {API}/stream/{{call}} {API}/stream/{{call}}/close {API}/vibe-edit {API}/vibe-edit/
+        {API}/undo-vibe-edit {API}/undo-vibe-edit/ {API}/vibe-code {API}/vibe-code/ {API}/vibe-starter-queries
+        {API}/vibe-starter-queries/ {API}/call/v2/generate/
+    """,
+}
 OTHER_ROUTES = [
     *(
         get(f"nothing of hers in {path}", path, 200, never=("SECRET", "{data}", "password"))
-        for path in (
-            "/config/",
-            f"{API}/app_id",
-            f"{API}/app_id/",
-            f"{API}/info/",
-            f"{API}/login_check",
-            f"{API}/queue/status",
-            "/manifest.json",
-            "/robots.txt",
-            "/favicon.ico",
-            "/healthz",
-            f"{API}/theme.css",
-            f"{API}/user",
-            f"{API}/user/",
-            f"{API}/login_check/",
-            f"{API}/token",
-            f"{API}/token/",
-        )
+        for path in f"""
+            /config/ {API}/app_id {API}/app_id/ {API}/info/ {API}/login_check {API}/queue/status /manifest.json
+            /robots.txt /favicon.ico /healthz {API}/theme.css {API}/user {API}/user/ {API}/login_check/ {API}/token
+            {API}/token/
+        """.split()
     ),
     *(
-        Attack(name=f"closed: {method} {path}", method=method, path=path, expected=(404,))
-        for method, path in (
-            ("GET", f"{API}/custom_component/1/client/component/x.js"),
-            ("GET", f"{API}/runs/"),
-            ("GET", f"{API}/stream/{{session}}/1/1/playlist-file"),
-            ("GET", f"{API}/vibe-code"),
-            ("GET", f"{API}/call/v2/generate/{{call}}"),
-            ("GET", "/assets/../../app.py"),
-            ("GET", "/pwa_icon"),
-            ("GET", "/pwa_icon/7"),
-            ("GET", "/monitoring/summary"),
-            ("HEAD", "/openapi.json"),
-            ("HEAD", f"{API}/proxy=http://127.0.0.1:9/"),
-            ("POST", f"{API}/process_recording"),
-            ("POST", f"{API}/stream/{{call}}"),
-            ("POST", f"{API}/stream/{{call}}/close"),
-            ("POST", f"{API}/vibe-edit"),
-            ("POST", f"{API}/vibe-edit/"),
-            ("POST", f"{API}/undo-vibe-edit"),
-            ("POST", f"{API}/undo-vibe-edit/"),
-            ("POST", f"{API}/vibe-code"),
-            ("POST", f"{API}/vibe-code/"),
-            ("POST", f"{API}/vibe-starter-queries"),
-            ("POST", f"{API}/vibe-starter-queries/"),
-            ("POST", f"{API}/call/v2/generate/"),
-        )
+        asked(f"closed: {method} {path}", f"{method} {path}", 404)
+        for method, paths in CLOSED.items()
+        for path in paths.split()
     ),
-    Attack(name="the length of another's upload", method="HEAD", path=f"{API}/file={{upload}}", expected=(403, 404)),
-    Attack(name="the page's head", method="HEAD", path="/", expected=(200,)),
+    asked("the length of another's upload", f"HEAD {API}/file={{upload}}", 403, 404),
+    asked("the page's head", "HEAD /", 200),
     get("the progress of an upload that never was", f"{API}/upload_progress?upload_id={'x' * 3000}", 404),
     *(
         post(f"another's upload, at {path}", f"{API}/{path}", 400, 403, body={"data": [OTHER_FILE, *FIELDS[1:]]})
         for path in ("call/generate/", "api/generate", "api/generate/", "run/generate/")
     ),
-    post(
-        "another's component, with a slash",
-        f"{API}/component_server/",
-        403,
-        404,
-        body={"session_hash": "{session}", "component_id": 1, "fn_name": "x", "data": []},
-    ),
+    post("another's component, with a slash", f"{API}/component_server/", 403, 404, body=HER_COMPONENT),
     post("the end of another's call, with a slash", f"{API}/reset/", 403, 404, body={**OWN, "event_id": "{call}"}),
-    post(
-        "a sign-in at Gradio's own address, which knows nobody",
-        "/login/",
-        302,
-        at="closed",
-        who="stranger",
-        headers={"content-type": "application/x-www-form-urlencoded"},
-        content=b"username=ada&password=x",
-    ),
-    post(
-        "another site signs somebody out",
-        "/logout",
-        403,
-        at="closed",
-        who="ada",
-        headers={"origin": "https://evil.example"},
-    ),
+    post("a sign-in where nobody is known", "/login/", 302, **SIGNED_OUT, headers=FIELDS_OF_A_FORM, content=SIGN_IN),
+    post("another site signs somebody out", "/logout", 403, at="closed", who="ada", headers=EVIL),
 ]
 
 LIVE = [
@@ -504,38 +345,13 @@ LIVE = [
         )
     ),
     post("a live stream of half a megabyte", "/live", 422, content=b"[" * 2**19),
-    post(
-        "a live stream from another site",
-        "/live",
-        403,
-        headers={"origin": "https://evil.example"},
-        body={"partner": "agent"},
-    ),
-    post("a live stream of a stranger", "/live", 401, at="closed", who="stranger", body={"partner": "agent"}),
+    post("a live stream from another site", "/live", 403, headers=EVIL, body={"partner": "agent"}),
+    post("a live stream of a stranger", "/live", 401, **SIGNED_OUT, body={"partner": "agent"}),
     post("a message to a stream that never was", "/live/x", 404, body={}),
     post("a message to another's run as a stream", "/live/{run}", 404, body={}),
-    Attack(name="the end of a stream that never was", method="DELETE", path="/live/x", expected=(404,)),
-    Attack(
-        name="the end of a stream by another site",
-        method="DELETE",
-        path="/live/x",
-        expected=(403,),
-        headers={"origin": "https://evil.example"},
-    ),
+    asked("the end of a stream that never was", "DELETE /live/x", 404),
+    asked("the end of a stream by another site", "DELETE /live/x", 403, headers=EVIL),
 ]
 
-KNOWN = [
-    *ADMIN,
-    *OTHER_ROUTES,
-    *LIVE,
-    *PATHS,
-    *OTHERS_THINGS,
-    *FORGED,
-    *UPLOADS,
-    *OTHER_SITES,
-    *STRANGERS,
-    *SCRIPTS,
-    *STUDIES,
-    *PUBLIC_PAGES,
-    *BY_HEADER,
-]
+_FIRST = [*ADMIN, *OTHER_ROUTES, *LIVE, *PATHS, *OTHERS_THINGS, *FORGED, *UPLOADS, *OTHER_SITES, *STRANGERS]
+KNOWN = [*_FIRST, *SCRIPTS, *STUDIES, *PUBLIC_PAGES]

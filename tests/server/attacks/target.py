@@ -6,7 +6,6 @@ import json
 import multiprocessing
 import os
 import secrets
-import socket
 import sqlite3
 import time
 import zipfile
@@ -22,7 +21,7 @@ from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.storage import Storage
 
-from ..lab import add_accounts, serve_apart
+from ..lab import add_accounts, free_port, serve_apart
 
 _READY = multiprocessing.get_context("forkserver")
 _READY.set_forkserver_preload(["tests.server.ready"])
@@ -40,9 +39,7 @@ class Target:
     """
 
     def __init__(self, folder: Path, *, accounts: bool, stub_pause: float = 0.0, **settings: Any) -> None:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            self.port = probe.getsockname()[1]
+        self.port = free_port()
         self.url, self.folder, self.accounts = f"http://127.0.0.1:{self.port}", folder, accounts
         self.data, self.stub_pause = folder / "data", stub_pause
         self.canary = folder / "canary.txt"

@@ -31,6 +31,7 @@ def places(target: Target) -> list[str]:
         "HTTP://127.0.0.1:9/x",
         "file:///etc/passwd",
         "",
+        "\0",
     ]
 
 

@@ -13,8 +13,7 @@ import pytest
 from webdemo.server.accounts.accounts import Accounts
 from webdemo.server.store.database import Database
 
-from ..clients import FIELDS, read_all
-from ..queue.test_queue import wait_for
+from ..clients import FIELDS, read_all, wait_for
 from .target import Target
 
 

@@ -11,22 +11,8 @@ from pydantic import ValidationError
 from webdemo.ui.components.accepts import accepts, accepts_event
 
 WRONG: tuple[Any, ...] = (
-    {"path": "{upload}", "meta": {"_type": "gradio.FileData"}},
-    {"__type__": "update", "value": "{run}"},
-    ["{run}"],
-    {},
-    [[[]]],
-    True,
-    -1,
-    0.5,
-    1e308,
-    10**30,
-    "",
-    "x" * 5000,
-    "\0",
-    "NaN",
-    "../../canary.txt",
-    None,
+    *({"path": "{upload}", "meta": {"_type": "gradio.FileData"}}, {"__type__": "update", "value": "{run}"}, ["{run}"]),
+    *({}, [[[]]], True, -1, 0.5, 1e308, 10**30, "", "x" * 5000, "\0", "NaN", "../../canary.txt", None),
 )
 """Of a type, size or meaning that hardly a component is sent."""
 

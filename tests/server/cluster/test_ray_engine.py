@@ -18,7 +18,7 @@ import pytest
 if find_spec("ray") is None:
     pytest.skip("Ray is not installed: pip install -r requirements-ray.txt", allow_module_level=True)
 
-from tests.server.queue.test_queue import wait_for
+from tests.server.clients import wait_for
 from webdemo.inference import Engine
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.run import Progress, Result

@@ -13,12 +13,10 @@ import pytest
 from fastapi.testclient import TestClient
 from starlette.concurrency import run_in_threadpool
 
-from tests.server.clients import HERE, HTML, JOIN, client_of, lab_of, settings_for
+from tests.server.clients import HERE, HTML, JOIN, client_of, settings_for
 from webdemo.server.accounts import quotas
-from webdemo.server.accounts.quotas import RateLimit
 from webdemo.server.http import page_html
 from webdemo.server.http.page_html import PageCache
-from webdemo.server.http.routes import Refused
 
 
 def test_the_page_and_its_headers(local: TestClient) -> None:
@@ -29,61 +27,6 @@ def test_the_page_and_its_headers(local: TestClient) -> None:
     assert answer.headers["referrer-policy"] == "same-origin"
     assert len(answer.headers["x-request-id"]) == 12
     assert "pasdedeux_visitor=" in answer.headers["set-cookie"]
-
-
-@pytest.mark.parametrize(
-    "path",
-    [
-        "/gradio_api/file=/etc/passwd",
-        "/gradio_api/file=../../etc/passwd",
-        "/gradio_api/file=%2e%2e/x",
-        "/gradio_api/file=/proc/self/environ",
-        "/gradio_api/file=https://example.com/x",
-        "/gradio_api/proxy=https://example.com/",
-        "/monitoring",
-        "/gradio_api/vibe-edit/",
-        "/docs",
-        "/openapi.json",
-        "/gradio_api/file=app.py",
-        "/a%00b",
-        "/..%5c..%5cx",
-        "/static/../app.py",
-        "/gradio_api/dev/reload",
-        "/gradio_api/deep_link",
-        "/static//x",
-        f"{HERE}//",
-        f"{HERE}//config",
-    ],
-)
-def test_paths_lead_nowhere(local: TestClient, path: str) -> None:
-    answer = local.get(path)
-    assert answer.status_code in (400, 403, 404) and "root:" not in answer.text
-
-
-def test_the_database_is_not_served(local: TestClient) -> None:
-    for file in (lab_of(local).settings.data / "history.db", Path(__file__)):
-        assert local.get(f"/gradio_api/file={file}").status_code in (403, 404)
-
-
-@pytest.mark.parametrize(
-    "headers",
-    [
-        {"origin": "https://evil.example"},
-        {"origin": "null"},
-        {"sec-fetch-site": "cross-site"},
-        {"origin": "http://127.0.0.1:9999"},
-        {"origin": "http://127.0.0.1.evil.example"},
-    ],
-)
-def test_other_sites_change_nothing(local: TestClient, headers: dict[str, str]) -> None:
-    answer = local.post(JOIN, json={"session_hash": "s1", "data": [], "fn_index": 0}, headers=headers)
-    assert answer.status_code == 403 and "Another site's page" in answer.json()["detail"]
-
-
-def test_a_head_that_is_no_address_is_refused(local: TestClient) -> None:
-    for headers in ({"host": "["}, {"origin": "http://["}, {"host": "]:1", "origin": "http://[x"}):
-        answer = local.post(JOIN, json={}, headers=headers)
-        assert answer.status_code == 400 and "not an address" in answer.json()["detail"]
 
 
 def test_foreign_names_are_refused(local: TestClient) -> None:
@@ -121,19 +64,7 @@ def test_bodies_have_limits(local: TestClient) -> None:
             yield b" " * 65536
 
     assert local.post(JOIN, content=endless()).status_code == 413
-    assert local.post(JOIN, content=b"[" * 15_000).status_code == 400
-    assert local.post(JOIN, content=b'{"session_hash": 7}').status_code == 400
     assert local.post(JOIN, content=b"{}", headers={"content-length": "-5"}).status_code == 400
-    assert local.get("/" + "a" * 5000).status_code == 414
-
-
-def test_too_many_requests() -> None:
-    rates = RateLimit(5)
-    for _ in range(5):
-        rates.take("a")
-    with pytest.raises(Refused, match="Too many requests"):
-        rates.take("a")
-    rates.take("b")
 
 
 def test_below_a_path(tmp_path: Path) -> None:
@@ -227,13 +158,6 @@ def test_the_page_is_packed_once_for_all_names(local: TestClient, monkeypatch: p
         answer = local.get("/", headers={**HTML, "host": host, "accept-encoding": "gzip"})
         assert answer.headers["content-encoding"] == "gzip"
         assert answer.text == before.replace("http://127.0.0.1", f"http://{host}")
-
-
-def test_nobody_says_where_the_page_is(local: TestClient) -> None:
-    """Gradio would take these headers for the page's address, and put it into every link."""
-    for name in ("x-forwarded-host", "x-gradio-server"):
-        for path in ("/", "/config"):
-            assert "evil.example" not in local.get(path, headers={name: "http://evil.example"}).text
 
 
 def test_a_browser_gets_an_error_page_of_the_lab(local: TestClient) -> None:

@@ -15,9 +15,8 @@ import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 
-from tests.server.clients import FIELDS, JOIN, answer_of, events_of, lab_of
+from tests.server.clients import FIELDS, JOIN, answer_of, events_of, lab_of, wait_for
 from tests.server.lab import stub_module
-from tests.server.queue.test_queue import wait_for
 from webdemo.inference import GenerateRequest
 from webdemo.server.http.health import Health
 from webdemo.server.logs import JsonLines, log_instead_of_printing

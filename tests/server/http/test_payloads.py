@@ -69,29 +69,15 @@ def deep(value: Any) -> Any:
 
 
 FORGED = (
-    {"value": FILE},
-    [[FILE]],
-    {"beats": [FILE]},
-    {"beats": [{"words": FILE}]},
-    STORY | {"more": FILE},
-    STORY | {"span": [FILE]},
-    STORY | FILE,
-    {"poses": [{"person": "a", "seconds": 0, "positions": [[FILE]]}]},
-    {"meta": FILE["meta"], "path": "/etc/passwd"},
-    FILE | {"more": FILE},
-    {"path": "/uploads/ada/x.glb", "url": FILE},
-    float("nan"),
-    float("inf"),
-    -float("inf"),
-    10**400,
-    {"span": [float("nan")]},
-    [float("inf")],
-    {},
-    [[]],
-    deep(1),
-    {"a": deep(1)},
-    STORY | {"beats": {"0": "They bow."}},
-    "\x00" * 3,
+    *({"value": FILE}, [[FILE]], {"beats": [FILE]}, {"beats": [{"words": FILE}]}, STORY | {"more": FILE}, STORY | FILE),
+    *(STORY | {"span": [FILE]}, {"poses": [{"person": "a", "seconds": 0, "positions": [[FILE]]}]}),
+    *(
+        {"meta": FILE["meta"], "path": "/etc/passwd"},
+        FILE | {"more": FILE},
+        {"path": "/uploads/ada/x.glb", "url": FILE},
+    ),
+    *(float("nan"), float("inf"), -float("inf"), 10**400, {"span": [float("nan")]}, [float("inf")], {}, [[]]),
+    *(deep(1), {"a": deep(1)}, STORY | {"beats": {"0": "They bow."}}, "\x00" * 3),
 )
 
 

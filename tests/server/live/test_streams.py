@@ -16,6 +16,7 @@ import pytest
 from motion import SMPL22, InputError
 from motion.things import Thing, shape
 from tests.motion.video.filming import film, packed, stepping
+from tests.server.clients import Clock
 from tests.server.lab import stub_module
 from tests.view.packed import unpack_positions
 from webdemo.server.accounts.quotas import Quota
@@ -28,15 +29,6 @@ from webdemo.ui.visitor import Visitor
 
 ADA, EVE = Visitor("ada", "ada"), Visitor("eve", "eve")
 STUB = stub_module()
-
-
-class Clock:
-    """A time that a test sets."""
-
-    now = 1000.0
-
-    def __call__(self) -> float:
-        return self.now
 
 
 def streams(most: int = 3, address: int = 2) -> Streams:

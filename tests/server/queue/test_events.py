@@ -21,9 +21,8 @@ from gradio.utils import SyncToAsyncIterator
 from starlette.routing import Mount
 
 from tests.server.attacks.target import Target
-from tests.server.clients import CALL, FIELDS, client_of, lab_of, settings_for
+from tests.server.clients import CALL, FIELDS, client_of, lab_of, settings_for, wait_for
 from tests.server.lab import ROOT, stub_module
-from tests.server.queue.test_queue import wait_for
 from tests.ui.stub_page import stub_context
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.accounts.visitors import Bindings

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from motion import InputError
+from tests.server.clients import wait_for
 from webdemo.inference import run
 from webdemo.inference.engine import Engine
 from webdemo.inference.run import Cancelled, Progress, Result
@@ -100,13 +101,6 @@ def queue_of(gate: Any, person: int = 4, address: float = math.inf, everybody: f
 def make(monkeypatch: pytest.MonkeyPatch, **limits: Any) -> tuple[Gate, People]:
     gate = Gate()
     return gate, People(queue_of(gate, **limits), monkeypatch)
-
-
-def wait_for(condition: Any) -> None:
-    until = time.monotonic() + 60
-    while not condition():
-        assert time.monotonic() < until
-        time.sleep(0.005)
 
 
 def test_who_has_had_least_goes_first(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,3 +17,8 @@ def notebook(tmp_path: Path) -> Iterator[Notebook]:
     database = Database(tmp_path / "h.db")
     yield Notebook(Storage(database, tmp_path / "motions"))
     database.close()
+
+
+@pytest.fixture
+def history(notebook: Notebook) -> Notebook:
+    return notebook

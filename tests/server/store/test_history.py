@@ -19,38 +19,20 @@ from tests.server.lab import stub_module
 from webdemo.inference import Engine
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.requests.predict import PredictRequest, PredictResult
-from webdemo.inference.run import Result
 from webdemo.server.store.database import Database, Run, Share
 from webdemo.server.store.history import DAY
 from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Entry, Search
 
-ME, OTHER = "user ada", "user eve"
-
-
-@pytest.fixture
-def history(notebook: Notebook) -> Notebook:
-    return notebook
+from .runs import ME, OTHER, kept, made
 
 
 def entries(history: Notebook, owner: str = ME) -> Sequence[Entry]:
     return history.search(owner, Search()).entries
 
 
-def made(request: Any) -> Result:
-    *_, result = stub_module().StubEngine().run(request)
-    return result
-
-
-def kept(history: Notebook, prompt: str = "Two people walk.", *, owner: str = ME, **fields: Any) -> str:
-    request = GenerateRequest(prompt=prompt, **({"seconds": 1.0, "steps": 1, "samples": 2} | fields))
-    run = history.begin(owner, request.to_dict(), prompt)
-    history.finish(run, made(request))
-    return run
-
-
 def test_a_run_is_found_again_as_it_was(history: Notebook) -> None:
-    run = kept(history, seed=9)
+    run = kept(history, seed=9, samples=2)
     opened = history.open(run, ME)
     assert (opened.entry.title, opened.entry.state) == ("Two people walk.", "done")
     assert opened.entry.request["seed"] == 9

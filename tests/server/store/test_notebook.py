@@ -15,21 +15,11 @@ import pytest
 from motion import InputError, formats
 from tests.server.lab import stub_module
 from webdemo.inference.requests import GenerateRequest, ReactRequest
-from webdemo.inference.requests.plans import KeptPlan, WindowPlan
 from webdemo.server.store import history as history_module
 from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Kept, Search
 
-ME, OTHER = "user ada", "user eve"
-PLAN = KeptPlan(windows=(WindowPlan((1.0, 2.0, 0.5)),))
-
-
-def kept(notebook: Notebook, prompt: str = "Two people walk.", *, owner: str = ME, **fields: Any) -> str:
-    request = GenerateRequest(prompt=prompt, **({"seconds": 1.0, "steps": 1} | fields))
-    run = notebook.begin(owner, request.to_dict(), prompt)
-    *_, result = stub_module().StubEngine().run(request)
-    notebook.finish(run, replace(result, manifest={**result.manifest, "plan": PLAN.to_dict()}))
-    return run
+from .runs import ME, OTHER, kept, made
 
 
 def found(notebook: Notebook, owner: str = ME, **wanted: Any) -> list[str]:
@@ -99,8 +89,7 @@ def test_how_a_tab_was_set_comes_back_for_its_owner_alone(notebook: Notebook) ->
     pair = stub_module().walking(2.0)
     request = ReactRequest(actor=pair.a, model="intergen", steps=1)
     run = notebook.begin(ME, request.to_dict(), "Reaction")
-    *_, result = stub_module().StubEngine().run(request)
-    notebook.finish(run, result)
+    notebook.finish(run, made(request))
     other = kept(notebook)
     notebook.keep(run, ME, Kept(controls={"person": "b", "end": 1.5}, people=pair.people, compared=(other,)))
     opened = notebook.open(run, ME)

@@ -17,9 +17,8 @@ from fastapi.testclient import TestClient
 from gradio import processing_utils
 
 from motion import InputError, formats
-from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, events_of, lab_of, settings_for
+from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, events_of, lab_of, settings_for, wait_for
 from tests.server.lab import stub_module
-from tests.server.queue.test_queue import wait_for
 from webdemo.server import app as app_module
 from webdemo.server.app import create_app
 from webdemo.server.store.scratch import KEPT_SECONDS, LEAST_BYTES, Scratch

@@ -11,7 +11,7 @@ from motion import InputError
 from webdemo.server.store.database import Share
 from webdemo.server.store.notebook import Notebook
 
-from .test_notebook import ME, OTHER, kept
+from .runs import ME, OTHER, kept
 
 
 def test_a_page_shows_its_run_and_nothing_that_it_was_made_from(notebook: Notebook) -> None:

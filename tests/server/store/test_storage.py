@@ -12,7 +12,6 @@ from sqlalchemy import select
 
 from motion import InputError
 from tests.server.lab import stub_module
-from webdemo.inference.requests import GenerateRequest
 from webdemo.server.accounts.quotas import Quota
 from webdemo.server.store.database import Database, Run
 from webdemo.server.store.notebook import Notebook
@@ -22,6 +21,8 @@ from webdemo.server.store.studies import Studies
 from webdemo.study import Pair
 from webdemo.ui.history import Search
 from webdemo.ui.visitor import Visitor
+
+from .runs import kept
 
 PEOPLE = ("user ada", "user eve", "user bob")
 
@@ -35,14 +36,6 @@ def notebook(tmp_path: Path) -> Iterator[Notebook]:
     database.close()
 
 
-def kept(notebook: Notebook, owner: str, seed: int = 0) -> str:
-    request = GenerateRequest(prompt="They walk.", seconds=2.0, steps=1, seed=seed)
-    run = notebook.begin(owner, request.to_dict(), "They walk.")
-    *_, result = stub_module().StubEngine().run(request)
-    notebook.finish(run, result)
-    return run
-
-
 def runs_of(notebook: Notebook, owner: str) -> set[str]:
     with notebook.database.session() as session:
         return set(session.scalars(select(Run.id).where(Run.owner == owner)))
@@ -50,7 +43,7 @@ def runs_of(notebook: Notebook, owner: str) -> set[str]:
 
 def test_nobody_s_deeds_remove_what_is_another_s(notebook: Notebook, tmp_path: Path) -> None:
     studies = Studies(notebook.storage, tmp_path / "studies")
-    file = notebook.folder / kept(notebook, "user z") / "1.npz"
+    file = notebook.folder / kept(notebook, owner="user z", seconds=2.0) / "1.npz"
     walk = stub_module().walking(1.0)
     draw, evicted, refused = random.Random(1), 0, 0
     for number in range(200):
@@ -61,7 +54,7 @@ def test_nobody_s_deeds_remove_what_is_another_s(notebook: Notebook, tmp_path: P
         deed = draw.choice(["run"] * 4 + ["import", "favourite", "upload", "film", "study", "clean"])
         try:
             if deed == "run":
-                kept(notebook, owner, number)
+                kept(notebook, owner=owner, seconds=2.0, seed=number)
             elif deed == "import":
                 notebook.take_in(owner, [file])
             elif deed == "favourite" and before[owner]:
@@ -88,17 +81,17 @@ def test_nobody_s_deeds_remove_what_is_another_s(notebook: Notebook, tmp_path: P
 
 def test_the_total_is_reached_and_one_s_own_runs_make_way_or_the_run_is_refused(notebook: Notebook) -> None:
     notebook.storage.room = Quota("bytes", person=1e9)
-    theirs = {kept(notebook, "user ada", seed) for seed in range(40)}
+    theirs = {kept(notebook, owner="user ada", seconds=2.0, seed=seed) for seed in range(40)}
     used = notebook.usage(Visitor("user ada", "user ada")).used
     notebook.storage.room = Quota("bytes", person=1e9, everybody=used + 3e5)
     with pytest.raises(InputError, match="others' runs are not removed for yours"):
         for seed in range(40):
-            notebook.favour(kept(notebook, "user eve", seed), "user eve", favourite=True)
+            notebook.favour(kept(notebook, owner="user eve", seconds=2.0, seed=seed), "user eve", favourite=True)
     assert runs_of(notebook, "user ada") == theirs
 
 
 def test_an_import_that_does_not_fit_is_refused_and_removes_nothing(notebook: Notebook, tmp_path: Path) -> None:
-    mine = {kept(notebook, "user ada", seed) for seed in range(5)}
+    mine = {kept(notebook, owner="user ada", seconds=2.0, seed=seed) for seed in range(5)}
     file = shutil.copy(notebook.folder / min(mine) / "1.npz", tmp_path)
     used = notebook.usage(Visitor("user ada", "user ada")).used
     notebook.storage.room = Quota("bytes", person=used / 0.75 + 1000)

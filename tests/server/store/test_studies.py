@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import csv
-import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -88,18 +88,15 @@ def test_two_tabs_of_one_person_cannot_vote_twice(studies: Studies) -> None:
     study = new(studies)
     said: list[str] = []
 
-    def vote() -> None:
+    def vote(_: int) -> None:
         try:
             studies.vote(study.key, "ada", 0, "1")
             said.append("")
         except InputError as error:
             said.append(str(error))
 
-    threads = [threading.Thread(target=vote) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with ThreadPoolExecutor(4) as tabs:
+        list(tabs.map(vote, range(4)))
     assert said.count("") == 1 and sum("voted on this pair already" in each for each in said) == 3
     assert sum(studies.mine(ME)[0].wins) == 1
 

@@ -89,9 +89,7 @@ def test_a_run_is_cancelled_before_its_request_was_read(tab: GenerateTab) -> Non
     ("changed", "sentence"),
     [
         ({"prompt": "   "}, "The prompt is empty"),
-        ({"prompt": "x" * 501}, "The prompt has 501 characters"),
         ({"seconds": 100.0}, "Length must be from 1 to 10 seconds"),
-        ({"steps": 2.5}, "DDIM steps must be a whole number"),
         ({"guidance": float("nan")}, "Guidance scale must be a number"),
         ({"samples": 99}, "Samples must be from 1 to 8"),
         ({"prompt": "impossible"}, "The stub cannot do this"),
@@ -142,15 +140,8 @@ def test_loading_is_shown_until_it_is_done_or_failed() -> None:
 def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
     demo = build_page(stub_context(StubEngine(), tmp_path))
     demo.config = demo.get_config_file()  # as it is mounted
-    assert list(demo.get_api_info()["named_endpoints"]) == [
-        "/predict",
-        "/generate",
-        "/generate_class",
-        "/react",
-        "/render",
-        "/scene",
-        "/read",
-    ]
+    offered = "/predict /generate /generate_class /react /render /scene /read"
+    assert list(demo.get_api_info()["named_endpoints"]) == offered.split()
 
 
 def test_words_become_paths_unless_that_is_switched_off(tab: GenerateTab) -> None:
