@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from motion import InputError
 
-from .captions import naming, usual_limb, with_thing
+from .captions import VERB, naming, usual_limb, with_thing
 from .lexicon import Entry, Lexicon, kind_of, lexicon
 from .plan import ON_TIPTOE, Act, Plan, merged
 from .reading import wordnet
@@ -37,7 +37,6 @@ _KINDS = ("begins", "ends", "light", "causes", "tried", "pretended", "wished", "
 """Verbs about other verbs, which the acts' modality, polarity and order stand for."""
 _SLOWEST_WALK = 0.7
 """The factor of speed from which a verb says how fast somebody walks; slower ones are gaits of their own."""
-_VERB = re.compile(r"\[([a-z-]+)\]")
 _PHRASAL = re.compile(r"\[([a-z-]+)\] (?:\{b\} )?([a-z]+)")
 _HANDLED = re.compile(r"\[([a-z-]+)\] (?:out |up )?(?:both|their|the|a|an) ([a-z]+)")
 """A verb of captions with its object."""
@@ -126,7 +125,7 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
     if parts and shown and not parts & shown and "{part}" not in caption and not act.part_of:
         return False  # "lays her head on B's lap" is not "on B's shoulder"
     handled = any(verb in closed("handles") and words.named_part(noun) for verb, noun in _HANDLED.findall(caption))
-    several = _VERB.findall(caption)
+    several = VERB.findall(caption)
     said_verbs = [_lemma(t, parsed) for t in within if t.pos_ in ("VERB", "NOUN")]
     if (handled and not parts and not act.part) or not set(entry.loose).isdisjoint(said_verbs):
         return False  # "supports her" is not "puts both hands on B's shoulders"
@@ -290,7 +289,7 @@ def said_words(texts: tuple[str, ...]) -> frozenset[str]:
 @lru_cache(maxsize=1024)
 def _verbs(captions: tuple[str, ...]) -> tuple[str, ...]:
     """The verbs of captions, and with what stands behind them where that makes another: "pick_up"."""
-    verbs = [verb for text in captions for verb in _VERB.findall(text)]
+    verbs = [verb for text in captions for verb in VERB.findall(text)]
     pairs = (f"{verb}_{word}" for text in captions for verb, word in _PHRASAL.findall(text))
     return tuple(dict.fromkeys([*verbs, *filter(wordnet.senses, pairs)]))
 

@@ -18,7 +18,8 @@ from .lexicon import Entry, Lexicon, kind_of, lexicon
 from .plan import Act, Plan
 from .reading.vocabulary import closed, vocabulary
 
-_VERB = re.compile(r"\[([a-z-]+)\]")
+VERB = re.compile(r"\[([a-z-]+)\]")
+"""A verb of a caption or a phrase: ``[walk]``."""
 _SLOT = re.compile(r"\{([a-z_]+)\} ?")
 _BY_FOOT = re.compile(r"\[(?:kick|step|hop|walk|run|march|limp|stumble|stamp|turn|spin)\]")
 _NAMES = {"a": "person A", "b": "person B"}
@@ -70,7 +71,7 @@ def worded(act: Act, caption: str) -> str:
     caption = caption if act.part else caption.replace(" on the {part}", "").replace("'s {part}", "")
     trunk = vocabulary().part(act.part or "") in closed("trunk")  # which is touched, and touches nothing
     limb = ("" if trunk else act.part) or usual_limb(caption)
-    text = _VERB.sub(lambda m: ("are" if m[1] == "be" else m[1]) if both else singular(m[1]), caption)
+    text = VERB.sub(lambda m: ("are" if m[1] == "be" else m[1]) if both else singular(m[1]), caption)
     values = {
         "a": "they" if both else _NAMES[act.agents[0]],
         "b": "each other" if both else _NAMES[other],
@@ -154,9 +155,8 @@ def beats(plan: Plan, known: Lexicon) -> list[str]:
 def sentence(groups: Sequence[Sequence[Act]], known: Lexicon) -> str:
     """Groups of acts that follow each other closely, as one sentence; "" where nothing is done or left undone."""
     told = [words.rstrip(".") for group in groups if (words := _sentence(group, known))]
-    return ", and then ".join([*told[:1], *(f"{words[:1].lower()}{words[1:]}" for words in told[1:])]) + "." * bool(
-        told
-    )
+    text = ", and then ".join([*told[:1], *(f"{words[:1].lower()}{words[1:]}" for words in told[1:])])
+    return f"{text}." if told else ""
 
 
 def _sentence(group: Sequence[Act], known: Lexicon) -> str:
@@ -227,7 +227,7 @@ def short(act: Act, entry: Entry | None) -> str:
         ahead = f"{singular(verb)} {rest}"
     plain = ahead or both
     phrase = _phrase(act, entry, "each other" if both else "")
-    text = f"{ahead} {_VERB.sub(lambda m: m[1] if plain else singular(m[1]), phrase)}".strip()
+    text = f"{ahead} {VERB.sub(lambda m: m[1] if plain else singular(m[1]), phrase)}".strip()
     side = act.direction if act.direction in closed("turns") else act.side
     if side in closed("turns") and f" {side} " not in f" {text} ":
         turns = side == act.direction or "[turn]" in phrase
@@ -249,7 +249,7 @@ def _phrase(act: Act, entry: Entry | None, both: str) -> str:
     if not entry.caption:
         return named
     act, caption = with_thing(act, entry.chip or entry.caption[0])
-    verb = _VERB.search(caption)
+    verb = VERB.search(caption)
     other = verb is None or verb[1] != name[0] or caption.startswith("{b}")
     no_limb = "{limb}" in caption and not act.part
     # "opens window", where the caption has a door, which the network knows

@@ -22,7 +22,7 @@ from motion.metrics.sentences.language import check, mask_of, masks, measured
 from motion.metrics.sentences.touches import has_sides
 
 from .accounting import account, shown_caption
-from .captions import by_limb, with_thing, worded
+from .captions import VERB, by_limb, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import ON_TIPTOE, Act, Plan
 from .qualifiers import OTHER_THING, body_part, plain, qualifiers
@@ -36,8 +36,10 @@ NO_RULE = "nothing measures it"
 
 _OF_THE_CLOCK = {"clockwise": "right", "counterclockwise": "left"}
 """Directions as seen from above, and those that a rule asks for."""
-UNSAID: dict[str, Any] = {"side": "any", "part": "body", "way": "any", "n": 1, "several": 2, "metres": 1.2, "held": 0.4}
-"""What a rule asks for where the words say nothing: ``metres`` is how far apart at least."""
+HELD = 0.4
+"""The part of a motion during which a posture is held, where the words say nothing."""
+UNSAID: Mapping[str, str | float] = {"side": "any", "part": "body", "way": "any", "n": 1, "several": 2, "metres": 1.2}
+"""What a rule asks for where the words say nothing, beside :data:`HELD`: ``metres`` is how far apart at least."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +107,7 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
         return Verdict(act.id, act.act, _words(act, entry), None, why, quoted, wrote)
     assert entry is not None
     asked: dict[str, list[str]] = {}
-    held = round(max(UNSAID["held"] / len(plan.beats()), motion.fps / motion.frames), 2)
+    held = round(max(HELD / len(plan.beats()), motion.fps / motion.frames), 2)
     unchecked: dict[str, None] = {}
     for who in act.agents:
         asked[who] = rules_of(act, entry, who, held=held)
@@ -276,7 +278,8 @@ def cast(rule: str, who: str, whom: str, *, counted: bool = False, **said: str |
         counted: the words say how often, so that ``times(…, n)`` is "exactly".
         said: what they say in place of :data:`UNSAID`.
     """
-    values: dict[str, ast.expr] = {name: ast.Constant(value) for name, value in {**UNSAID, **said}.items()}
+    given = {**UNSAID, "held": HELD, **said}
+    values: dict[str, ast.expr] = {name: ast.Constant(value) for name, value in given.items()}
     values |= {"who": ast.Name(who), "whom": ast.Name(whom)}
 
     class Cast(ast.NodeTransformer):
@@ -303,7 +306,7 @@ def _words(act: Act, entry: Entry | None) -> str:
         return act.act.replace("-", " ")
     caption = shown_caption(act, entry)
     if act.polarity == "not":
-        caption = re.sub(r"\[([a-z-]+)\]", r"[do] not \1", caption, count=1)
+        caption = VERB.sub(r"[do] not \1", caption, count=1)
     if act.already:
         caption = caption.replace("] down", "]")  # "they sit", and not "they sit down"
     text = worded(*with_thing(act, caption))

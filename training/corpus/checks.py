@@ -29,7 +29,7 @@ def allowed_skate(scene: Scene) -> float:
     return 0.3 if acts & FLYING or scene.family == "salsa" else 0.15
 
 
-def foot_skate(positions: Array) -> float:
+def slower_foot(positions: Array) -> float:
     """Mean speed over the ground, in metres a second, of the slower foot joint of a person (T, 22, 3).
 
     In walking and standing at least one heel or toe rests at any time, so this is near 0 without sliding;
@@ -55,7 +55,7 @@ def fault(scene: Scene) -> str | None:
     trunks = people[:, :, list(TRUNK)]
     if np.linalg.norm(trunks[0, :, :, None] - trunks[1, :, None], axis=-1).min() < 0.12:
         return "trunks overlap"
-    if max(foot_skate(person) for person in people) > allowed_skate(scene):
+    if max(slower_foot(person) for person in people) > allowed_skate(scene):
         return "feet slide"
     if np.linalg.norm(np.diff(people, n=2, axis=1), axis=-1).max() * FPS**2 > 260:
         return "a joint jumps"

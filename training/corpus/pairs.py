@@ -17,7 +17,7 @@ from motion.smoothing import eased_marks
 from motion.transforms import canonicalize, facing
 from motion.vectors import FLAT, Array, unit
 
-from .checks import foot_skate
+from .checks import slower_foot
 from .compose import ARMS
 from .contact import settle
 from .cues import STILL, Beat, Scene
@@ -89,7 +89,7 @@ def _fault(people: Array, pair: Pair) -> str | None:
         return "fit further than 90 mm from the joints"
     if (np.abs(np.diff(people, axis=1)) * FPS).max() > 14:
         return "a joint moves faster than 14 m/s"
-    if max(foot_skate(person) for person in people) > 0.4:
+    if max(slower_foot(person) for person in people) > 0.4:
         return "feet slide faster than 0.4 m/s"
     lean = people[:, :, SMPL22.index("neck")] - people[:, :, 0]
     if (lean[..., 1] / np.linalg.norm(lean, axis=-1)).min() < 0.5:

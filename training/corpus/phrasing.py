@@ -16,18 +16,18 @@ from itertools import product
 import numpy as np
 
 from acts import Act
-from acts.captions import gerund, singular
+from acts.captions import VERB, gerund, plural, singular
 from acts.frames import PREPOSITIONS, Frame
 from acts.lexicon import Entry, lexicon
 from acts.reading import read
+from acts.reading.vocabulary import closed
 
 from .cues import WORDS, entry
 
+Rng = np.random.Generator
 HELD_OUT = 6
 """Percentage of the phrases and names that are kept for captions of the test split."""
-_VERB = re.compile(r"\[([a-z-]+)\]")
 _SLOT = re.compile(r"\{([a-z]+)\}")
-_LIMBS = ("arm", "hand", "leg", "foot")
 _ONE_EACH = re.compile(r"\btheir (head|face|chest|fist|ear|guard|temper)\b")
 _LIGHT = ("be", "do", "go", "have", "make", "remain")
 """Verbs that stand in no other's place."""
@@ -65,7 +65,7 @@ def _shared() -> frozenset[str]:
 
 
 def _verb(phrase: str) -> str:
-    return _VERB.findall(phrase)[0].replace("-", "")
+    return VERB.findall(phrase)[0].replace("-", "")
 
 
 def _reworded(phrase: str, known: Entry) -> list[str]:
@@ -76,7 +76,7 @@ def _reworded(phrase: str, known: Entry) -> list[str]:
         alike = Frame.parse(frame).verbs
         if verb in alike:
             verbs |= dict.fromkeys(sorted(other for other in alike - {verb} if other not in _LIGHT))
-    return [_VERB.sub(f"[{other}]", phrase, count=1) for other in verbs]
+    return [VERB.sub(f"[{other}]", phrase, count=1) for other in verbs]
 
 
 def _of_frames(known: Entry) -> list[str]:
@@ -142,9 +142,9 @@ def spoken(act: Act, phrase: str, other: str, whose: str, form: str) -> str:
     if form in ("is", "are"):
         return f"{form} {spoken(act, phrase, other, whose, 'ing')}"
     inflected = {"s": singular, "ing": gerund}.get(form, str)
-    text = _VERB.sub(lambda match: inflected(match[1]), phrase).partition(" ")[2]
-    limb = act.part if act.part in _LIMBS and "{part}" not in phrase else "hand"
-    limbs = {"both": f"both {'feet' if limb == 'foot' else f'{limb}s'}", None: f"a {limb}"}
+    text = VERB.sub(lambda match: inflected(match[1]), phrase).partition(" ")[2]
+    limb = act.part if act.part in closed("limbs") and "{part}" not in phrase else "hand"
+    limbs = {"both": f"both {plural(limb)}", None: f"a {limb}"}
     values = {
         "part": act.part or "",
         "side": act.side if act.side in ("left", "right") else "",
@@ -166,11 +166,6 @@ def names_side(phrase: str) -> bool:
 
 
 # ---- names of two people -------------------------------------------------------------------------
-
-
-Rng = np.random.Generator
-
-
 @dataclass(frozen=True)
 class Cast:
     """Names of two people.

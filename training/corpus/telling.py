@@ -9,6 +9,7 @@ import re
 from collections.abc import Collection, Sequence
 
 from acts import Act
+from acts.captions import VERB
 from motion.metrics.sentences import kept_out
 
 from .cues import STILL, WORDS, Label, Scene, entry, label
@@ -166,7 +167,7 @@ class _Writer:
         if "{b}" in phrase:  # "pats her shoulder" may be one's own
             whom = "each other" if both else self.names.object(other, pronoun="{b}'s" not in phrase)
         if act.modality == "offered":
-            phrase = re.sub(r"\[([a-z-]+)\]", r"[offer] to \1", phrase, count=1)
+            phrase = VERB.sub(r"[offer] to \1", phrase, count=1)
         text = spoken(act, phrase, whom, self.names.own(act.agents), form)
         if act.manner and self.rng.random() < 0.4:
             text = f"{text} {act.manner[0]}"

@@ -85,6 +85,6 @@ def test_feet_hold_where_people_walk_and_turn(library: Library) -> None:
     together = ("walk-together", "walk-together", "walk-together")
     for beat in (("walk-up", "walk-up", STILL), ("leave", "walk-away", STILL), together):
         scene = staged(library, beat)
-        assert max(checks.foot_skate(person) for person in scene.positions) < 0.12, beat
+        assert max(checks.slower_foot(person) for person in scene.positions) < 0.12, beat
     scene = staged(library, ("turn-to", "turn-to", STILL), heading=np.pi)
-    assert max(checks.foot_skate(person) for person in scene.positions) < 0.08
+    assert max(checks.slower_foot(person) for person in scene.positions) < 0.08

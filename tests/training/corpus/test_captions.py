@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from acts import Act, read
-from acts.captions import singular
+from acts.captions import VERB, singular
 from tests.training.corpus.recorded import KINDS
 from training.corpus.cues import Beat, Label, label, steps
 from training.corpus.phrasing import OBJECTS, OWN, Names, draw_cast, fitting, phrases, reads_back, spoken
@@ -49,7 +49,7 @@ def told(number: int, seed: int, split: str = "train") -> list[str]:
 def verbs() -> frozenset[str]:
     """Base forms of the verbs of all phrases in the scenes; "back" is an adverb as well ("pushes him back")."""
     names = {name for kind in KINDS for pair in kind for cue in pair for g in steps(cue) for name, *_ in g}
-    found = {verb for name in names for text in phrases(name) for verb in re.findall(r"\[([a-z-]+)\]", text)}
+    found = {verb for name in names for text in phrases(name) for verb in VERB.findall(text)}
     return frozenset(found) - {"back"}
 
 
