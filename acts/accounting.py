@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from motion import InputError
 
-from .captions import VERB, naming, usual_limb, with_thing
+from .captions import VERB, caption_of, usual_limb, with_thing
 from .lexicon import Entry, Lexicon, kind_of, lexicon
 from .plan import ON_TIPTOE, Act, Plan, merged
 from .reading import wordnet
@@ -23,7 +23,7 @@ from .reading.parses import Parse, parses
 from .reading.people import A_NAME, ANYONE, B_NAME
 from .reading.spelling import Speller
 from .reading.syntax import is_likeness, seems
-from .reading.vocabulary import FORMATION, closed, vocabulary
+from .reading.vocabulary import FORMATION, closed, is_act, vocabulary
 from .shapes import Gesture, Go, Strike, Touch
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ _SLOWEST_WALK = 0.7
 _PHRASAL = re.compile(r"\[([a-z-]+)\] (?:\{b\} )?([a-z]+)")
 _HANDLED = re.compile(r"\[([a-z-]+)\] (?:out |up )?(?:both|their|the|a|an) ([a-z]+)")
 """A verb of captions with its object."""
+_EACH_OTHER = re.compile(r"\b(?:each other|one another)\b", re.IGNORECASE)
 _WORD, _SLOTS = re.compile(r"[a-z]+"), re.compile(r"\{(?![\w.]+:)[^{}]*\}")
 
 
@@ -51,11 +52,13 @@ class Account(NamedTuple):
         unread: the stretches that are in no act, in the sentence's order.
         unsaid: those that an act was read from and that its captions do not say, by the act's id.
         others: the words of the acts whose captions say none of their verbs, by the act's id.
+        towards: the ids of the acts whose clauses name the person to whom they are done.
     """
 
     unread: tuple[str, ...] = ()
     unsaid: Mapping[str, tuple[str, ...]] = {}
     others: Mapping[str, str] = {}
+    towards: Set[str] = frozenset()
 
 
 def account(plan: Plan) -> Account:
@@ -74,24 +77,26 @@ def _account(plan: Plan, known: Lexicon) -> Account:
     unsaid: dict[str, list[tuple[int, int]]] = {}
     others: dict[str, str] = {}
     taken: list[tuple[int, int]] = []
+    towards: set[str] = set()
     if not any(start == 0 and stop >= len(plan.sentence.rstrip()) for start, stop in whole):
         speller = Speller(known)
         try:
             parsed = next(parses(plan.sentence, speller))
         except InputError:  # no parser is installed, where a kept plan is shown
             return Account(_quoted(left, plan.sentence))
+        names = {word.lower() for person in plan.people for word in person.words}
         spans = {t.i: parsed.text.span(t.idx, t.idx + len(t)) for t in parsed.doc}
         for act in plan.acts:
             entry, own = known.entries.get(act.act), act.words
             if entry is not None and entry.caption and own is not None:
                 within = [t for t in parsed.doc if own.start <= spans[t.i][0] and spans[t.i][1] <= own.stop]
-                if within and not _is_named(within, act, entry, parsed):
+                towards |= {act.id} if any(_is_other(t, names) for t in within) else set()
+                if within and not _is_named(within, act, entry, plan, parsed):
                     verb = next((t for t in within if t.pos_ == "VERB"), within[0])
                     taken.append((spans[verb.i][0], own.stop))
                     others[act.id] = plan.sentence[spans[verb.i][0] : own.stop].strip(" ,;.")
         left = [(i, j) for i, j in left if not any(i < stop and start < j for start, stop in taken)]
         left += [each for each in parsed.text.left_out() if not any(i < each[1] and each[0] < j for i, j in whole)]
-        names = {word.lower() for person in plan.people for word in person.words}
         for token in parsed.doc:
             start, stop = spans[token.i]
             told = any(first <= start and stop <= last for first, last in (*whole, *taken))
@@ -109,21 +114,27 @@ def _account(plan: Plan, known: Lexicon) -> Account:
         of: _quoted([(i, j) for i, j in each if not any(i < y and x < j for x, y in left)], plan.sentence)
         for of, each in unsaid.items()
     }
-    return Account(_quoted(left, plan.sentence), named, others)
+    return Account(_quoted(left, plan.sentence), named, others, frozenset(towards))
 
 
 def _quoted(spans: list[tuple[int, int]], text: str) -> tuple[str, ...]:
     return tuple(text[i:j] for i, j in merged(spans, text))[:MOST_WORDS]
 
 
-def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> bool:
+def _is_named(within: list[Token], act: Act, entry: Entry, plan: Plan, parsed: Parse) -> bool:
     """True for an act whose captions say what the words of its clause do: a verb, or several of the other words."""
-    words, captions, caption = vocabulary(), said_words(entry.caption), shown_caption(act, entry)
-    verbs = _verbs(entry.caption)
+    words, captions = vocabulary(), said_words(entry.caption)
+    caption, verbs = shown_caption(act, entry, plan.text(act.words)), _verbs(entry.caption)
+    if _is_other_thing(act, entry, caption):
+        return False  # "points at the floor" is not "points at B"
     parts = {words.part(_lemma(t, parsed)) for t in within} - {""}
     shown = {words.part(word) for word in said_words((caption.replace("side by side", ""),))} - {""}
     if parts and shown and not parts & shown and "{part}" not in caption and not act.part_of:
         return False  # "lays her head on B's lap" is not "on B's shoulder"
+    spots = {word for t in within if words.part(word := _lemma(t, parsed)) not in closed("limbs") | {""}}
+    near = {word for word in said_words((caption,)) if words.part(word) in {words.part(each) for each in spots}}
+    if near and near.isdisjoint(spots) and "{part}" not in caption:
+        return False  # "rubs his nose" is not "rubs his face"
     handled = any(verb in closed("handles") and words.named_part(noun) for verb, noun in _HANDLED.findall(caption))
     several = VERB.findall(caption)
     said_verbs = [_lemma(t, parsed) for t in within if t.pos_ in ("VERB", "NOUN")]
@@ -151,14 +162,36 @@ def _is_named(within: list[Token], act: Act, entry: Entry, parsed: Parse) -> boo
     return len(shared) >= 2 or (not own and (bool(shared) or empty))
 
 
-def shown_caption(act: Act, entry: Entry) -> str:
-    """The caption in whose words the verdict on an act is given: with its direction, or its own verb, where one has."""
-    usual, own = naming(act, entry), f"[{act.act.split('-')[0]}]"
-    alike = [text for text in entry.caption if own in text and _slots(text) == _slots(usual)]
+def shown_caption(act: Act, entry: Entry, said: str = "") -> str:
+    """The caption in whose words the verdict on an act is given.
+
+    It is one with the act's direction, or its own verb, where one has, to the other where the act is, and of those
+    the one that adds least to the words that are ``said``.
+    """
+    own, spoken, usual = f"[{act.act.split('-')[0]}]", frozenset(_WORD.findall(said.lower())), caption_of(act, entry)
+    both = len(act.agents) == 2 and "{b}" in usual
+    usual = next((text for text in entry.caption if act.thing and "{thing}" in text), usual)
+    usual = next((text for text in entry.caption if both and "{thing}" not in usual and "{a+b}" in text), usual)
+    named = act.patient is not None or bool(_EACH_OTHER.search(said))
+    slots = (_slots(usual), _slots(usual) | {"{b}"} if named else None)
+    alike = [text for text in entry.caption if own in text and _slots(text) in slots]
     alike = [text for text in alike if act.thing or not text.endswith("something")]
-    limbs = {text: {vocabulary().named_part(word) for word in _WORD.findall(text)} & closed("limbs") for text in alike}
-    alike.sort(key=lambda text: ((act.part or "") not in text, not act.part and bool(limbs[text]), text != usual))
+
+    def unlike(text: str) -> tuple[bool | int, ...]:
+        words = said_words((text,)) - closed("plain")
+        limbs = {vocabulary().named_part(word) for word in words} & closed("limbs")
+        alone = named and "{b}" not in text
+        other_part = (act.part or "") not in text or (not act.part and bool(limbs))
+        return other_part, alone, len(words - spoken) if said else 0, text != usual
+
+    alike.sort(key=unlike)
     return next((text for text in alike if act.direction in text.split()), next(iter(alike), usual))
+
+
+def _is_other_thing(act: Act, entry: Entry, caption: str) -> bool:
+    words = said_words((caption,))
+    other = act.thing and "{b}" in caption and not entry.thing and not set(act.thing.split()) & words
+    return bool(other) and act.thing not in closed("fillers") and not is_act(act.thing or "")
 
 
 def _slots(caption: str) -> set[str]:
@@ -208,15 +241,16 @@ def _read_by(token: Token, start: int, stop: int, plan: Plan, known: Lexicon, pa
         near = own is None or any(own.start < span.stop and span.start < own.stop for span in around)
         if entry is not None and near:
             found_by = _is_read(token, act, entry, parsed)
-            if _is_said(token, act, entry, parsed) or (found_by and token.dep_ == "prt"):
+            if _is_said(token, act, entry, plan, parsed) or (found_by and token.dep_ == "prt"):
                 return ""
             reader = act.id if found_by and reader is None else reader
     return reader
 
 
-def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
+def _is_said(token: Token, act: Act, entry: Entry, plan: Plan, parsed: Parse) -> bool:
     """True for a word that the verdict on an act says, or that one of its fields stands for."""
-    words, lemma, text, caption = vocabulary(), _lemma(token, parsed), token.lower_, shown_caption(act, entry)
+    words, lemma, text = vocabulary(), _lemma(token, parsed), token.lower_
+    caption = shown_caption(act, entry, plan.text(act.words))
     forms = {lemma, text, words.likeness.get(lemma, ""), *_WORD.findall(text)}
     way = words.directions.get(text) if token.pos_ != "VERB" else None  # and not "left the room"
     if way in closed("turns"):
@@ -230,7 +264,7 @@ def _is_said(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
         return joined in said_words(entry.caption)
     if text == "own":
         return act.patient is None or act.part_of in act.agents
-    if _is_target(token) and (entry.to == "other" or any(slot in caption for slot in ("{b}", "{a+b}"))):
+    if _is_target(token) and any(slot in caption for slot in ("{b}", "{a+b}")):
         goes_by = "past {b}" in caption  # "staggers towards him" is not "past him"
         return not goes_by and not any(c.lower_.endswith(("self", "selves")) for c in token.children)
     loose = token.pos_ in ("ADV", "ADP") and not _is_target(token)  # "dances around" is more than "dances"
@@ -320,14 +354,26 @@ def _joined(token: Token, parsed: Parse) -> str:
 
 
 def _is_place(token: Token) -> bool:
-    return token.lower_ in closed("where") and any(c.dep_ in ("pobj", "prep") for c in token.children)
+    return token.lower_ in closed("where") and any(
+        c.dep_ == "pobj" or (c.dep_ == "prep" and c.lower_ != "with") for c in token.children
+    )
 
 
 def _is_target(token: Token) -> bool:
     """True for a preposition before the person to whom something is done: "on each other"."""
-    targets = [c for c in token.children if c.dep_ == "pobj"] if token.lower_ in closed("targets") else []
-    named = any(c.text in (A_NAME, B_NAME) or vocabulary().is_person(c.lemma_.lower()) for c in targets)
-    return named or any((c.pos_ == "PRON" and c.lower_ != "it") or c.lower_ == "other" for c in targets)
+    return token.lower_ in closed("targets") and any(_is_somebody(c) for c in token.children if c.dep_ == "pobj")
+
+
+def _is_somebody(token: Token) -> bool:
+    named = token.text in (A_NAME, B_NAME) or token.lower_ == "other" or vocabulary().is_person(token.lemma_.lower())
+    return named or (token.pos_ == "PRON" and token.lower_ not in ("it", "something"))
+
+
+def _is_other(token: Token, names: Set[str]) -> bool:
+    """True for the other person, to whom something is done."""
+    itself = token.lower_.endswith(("self", "selves"))
+    named = _is_somebody(token) or token.lower_ in names
+    return token.dep_ in ("pobj", "dobj", "dative") and named and not itself
 
 
 def _phrase(token: Token) -> tuple[int, int]:

@@ -128,14 +128,6 @@ def with_thing(act: Act, caption: str) -> tuple[Act, str]:
     return (act.model_copy(update={"thing": named}) if act.thing else act), caption
 
 
-def naming(act: Act, entry: Entry) -> str:
-    """The caption of an act that has a place for its thing or speaks of two at once; else its usual one."""
-    other = caption_of(act, entry)
-    both = len(act.agents) == 2 and "{b}" in other
-    fits = [text for text in entry.caption if act.thing and "{thing}" in text]
-    return next(iter([*fits, *(text for text in entry.caption if both and "{a+b}" in text)]), other)
-
-
 def caption_of(act: Act, entry: Entry) -> str:
     """The caption that fits an act: its entry's first, or the first without the other where one person acts alone."""
     alone = len(act.agents) == 1 and act.patient is None and entry.to != "other" and not entry.mutual

@@ -8,9 +8,8 @@ more where they do; ``metres`` is how far apart, and ``held`` the share of the t
 
 from __future__ import annotations
 
-import ast
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -25,7 +24,7 @@ from .accounting import account, shown_caption
 from .captions import VERB, by_limb, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import ON_TIPTOE, Act, Plan
-from .qualifiers import OTHER_THING, body_part, plain, qualifiers
+from .qualifiers import body_part, plain, qualifiers
 from .shapes import Lift
 
 ONLY = {"tried": "only tried", "offered": "only offered", "pretended": "only pretended", "wished": "only wished"}
@@ -103,8 +102,13 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
     left = account(plan)
     wrote = left.others.get(act.id, "")
     quoted = tuple(f"“{each}”" for each in left.unsaid.get(act.id, ()))
+
+    def verdict(done: bool | None, measure: str, kinds: Iterable[str]) -> Verdict:
+        words = _words(plain(act, frozenset(kinds)) if done and act.happens else act, entry, plan)
+        return Verdict(act.id, act.act, words, done, measure, (*kinds, *quoted), wrote)
+
     if why := _unjudged(act, entry):
-        return Verdict(act.id, act.act, _words(act, entry), None, why, quoted, wrote)
+        return verdict(None, why, _kinds(act, entry, plan) if why == NO_RULE and entry is not None else ())
     assert entry is not None
     asked: dict[str, list[str]] = {}
     held = round(max(HELD / len(plan.beats()), motion.fps / motion.frames), 2)
@@ -112,32 +116,36 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
     for who in act.agents:
         asked[who] = rules_of(act, entry, who, held=held)
         mask = next((mask for rule in asked[who] for mask in masks(rule)[:1]), "")
-        for kind, rule in qualifiers(act, entry, who, mask, plan.text(act.words) if act.words else ""):
+        for kind, rule in qualifiers(act, entry, who, mask, plan.text(act.words), to_other=act.id in left.towards):
             asked[who] += [rule] if rule else []
             unchecked |= {} if rule else {kind: None}
     casts = [rule for rules in asked.values() for rule in rules]
+    if len(asked) == 2 and not entry.mutual and _AT_ONCE.search(plan.text(act.words)):
+        casts += [f"together({', '.join(masks(rules[0])[0] for rules in asked.values())}, 1.0)"]
     if act.polarity == "not":
         seen = any(all(check(rule, motion) for rule in rules) for rules in asked.values())
         done = None if seen and unchecked else not seen
         measure = next(iter(unchecked)) if done is None else _measure([], casts, motion)
-        return Verdict(act.id, act.act, _words(act, entry), done, measure, (*unchecked, *quoted), wrote)
+        return verdict(done, measure, unchecked)
     failed = [rule for rule in casts if not check(rule, motion)]
-    if not failed and OTHER_THING in unchecked:
-        return Verdict(act.id, act.act, _words(act, entry), None, OTHER_THING, quoted, wrote)
     late = "" if failed else _held_before(act, plan, motion, known) or _too_early(act, plan, motion, known, before)
-    done = not failed and not late
-    words = _words(plain(act, frozenset(unchecked)) if done else act, entry)
-    measure = late or _measure(failed, casts, motion)
-    return Verdict(act.id, act.act, words, done, measure, (*unchecked, *quoted), wrote)
+    return verdict(not failed and not late, late or _measure(failed, casts, motion), unchecked)
 
 
 def decided(verdict: Verdict, act: Act, plan: Plan, *, done: bool, measure: str) -> Verdict:
     """A verdict by something else than a rule, such as a thing that moves: nothing measures the act's qualifiers."""
     entry = lexicon().entries[act.act]
-    said = plan.text(act.words) if act.words else ""
-    kinds = dict.fromkeys(kind for who in act.agents for kind, _ in qualifiers(act, entry, who, "", said))
-    words = _words(plain(act, frozenset(kinds)) if done else act, entry)
-    return replace(verdict, done=done, measure=measure, words=words, unchecked=(*kinds, *verdict.unchecked))
+    kinds = _kinds(act, entry, plan)
+    words = _words(plain(act, frozenset(kinds)) if done else act, entry, plan)
+    left = dict.fromkeys((*kinds, *verdict.unchecked))
+    return replace(verdict, done=done, measure=measure, words=words, unchecked=tuple(left))
+
+
+def _kinds(act: Act, entry: Entry, plan: Plan) -> dict[str, None]:
+    """The kinds of an act's qualifiers, where no rule measures any."""
+    return dict.fromkeys(
+        kind for who in act.agents for kind, _ in qualifiers(act, entry, who, "", plan.text(act.words))
+    )
 
 
 def _unjudged(act: Act, entry: Entry | None) -> str:
@@ -156,6 +164,7 @@ def _measure(failed: list[str], rules: list[str], motion: Motion) -> str:
     return next(filter(None, (measured(rule, motion, lacking=lacking) for rule in failed or rules)), "")
 
 
+_AT_ONCE = re.compile(r"\b(?:together|simultaneously|at the same time|in unison)\b", re.IGNORECASE)
 _LATER = 0.2
 """Seconds by which an act that comes after another is later, at least."""
 _ENTERS = re.compile(r"\b(?:down|up|onto|(?:get|take|mount|jump|hop|climb|leap|drop|sink|lower)s?)\b")
@@ -220,7 +229,7 @@ def _is_attitude(entry: Entry) -> bool:
 
 def _held_before(act: Act, plan: Plan, motion: Motion, known: Lexicon) -> str:
     """Says so of an attitude that the words begin, as "sits down" does, and that is held from the start."""
-    said = plan.text(act.words).lower() if act.words is not None else ""
+    said = plan.text(act.words).lower()
     if act.already or not _ENTERS.search(said) or not _is_attitude(known.entries[act.act]):
         return ""
     begins = [i for mask in _seen(act, known) for i, _ in _stretches(mask, motion)]
@@ -253,6 +262,11 @@ def _seen(act: Act, known: Lexicon) -> list[str]:
     return [mask for mask in spans if not mask.startswith("stays(")]
 
 
+_COUNT = re.compile(r"\btimes\((.*?), (n|several)\)")
+_NAME = re.compile(r"'[^']*'|\b[a-z]+\b(?!\s*[(=])")
+"""Names in a rule, and what stands in quotes, which is none."""
+
+
 # ---- rules -----------------------------------------------------------------------------------------------
 def rules_of(act: Act, entry: Entry, who: str, **said: str | float) -> list[str]:
     """The rules of an act with its own values in the place of their names, for one of its agents, and what is said."""
@@ -279,32 +293,20 @@ def cast(rule: str, who: str, whom: str, *, counted: bool = False, **said: str |
         said: what they say in place of :data:`UNSAID`.
     """
     given = {**UNSAID, "held": HELD, **said}
-    values: dict[str, ast.expr] = {name: ast.Constant(value) for name, value in given.items()}
-    values |= {"who": ast.Name(who), "whom": ast.Name(whom)}
-
-    class Cast(ast.NodeTransformer):
-        def visit_Name(self, node: ast.Name) -> ast.expr:
-            return values.get(node.id, node)
-
-        def visit_Call(self, node: ast.Call) -> ast.expr:
-            count = isinstance(node.func, ast.Name) and node.func.id == "times"
-            said = count and any(isinstance(each, ast.Name) and each.id in ("n", "several") for each in node.args)
-            self.generic_visit(node)
-            if said and counted:
-                node.func = ast.Name("exactly")
-            return node
-
-    try:
-        return ast.unparse(Cast().visit(ast.parse(rule, mode="eval")))
-    except SyntaxError:
-        return rule  # its reader says what is wrong with it
+    values = {name: repr(value) for name, value in given.items()} | {"who": who, "whom": whom}
+    exact = _COUNT.sub(r"exactly(\1, \2)", rule) if counted else rule
+    return _NAME.sub(lambda name: values.get(name[0], name[0]), exact)
 
 
-def _words(act: Act, entry: Entry | None) -> str:
-    """An act in plain words, with the people as A and B."""
+def _words(act: Act, entry: Entry | None, plan: Plan) -> str:
+    """An act in plain words, with the people as A and B; what is done to nobody in the plan's words names nobody."""
     if entry is None or not entry.caption:
         return act.act.replace("-", " ")
-    caption = shown_caption(act, entry)
+    if entry.to == "other" and act.id not in account(plan).towards:
+        act = act.model_copy(update={"patient": None})
+    if act.distance is not None:
+        act = act.model_copy(update={"times": None})
+    caption = shown_caption(act, entry, plan.text(act.words))
     if act.polarity == "not":
         caption = VERB.sub(r"[do] not \1", caption, count=1)
     if act.already:
@@ -321,42 +323,6 @@ def _words(act: Act, entry: Entry | None) -> str:
     pace = "slowly" if act.speed < 0.7 else "quickly" * (act.speed > 1.4)
     if pace and pace not in text and set(act.manner) <= {ON_TIPTOE}:
         text += f" {pace}"
+    if act.distance is not None and "apart" not in text:
+        text += f" ({act.distance:.1f} m)"
     return text + " once" * (act.times == 1)
-
-
-# ---- the motion in words -------------------------------------------------------------------------------
-def describe(plan: Plan, verdicts: Sequence[Verdict]) -> str:
-    """What a motion shows of a plan, in sentences; "" where it shows nothing and nothing is amiss.
-
-    Args:
-        plan: of the motion.
-        verdicts: on the plan's acts, as :func:`checked` gives them.
-    """
-    known = lexicon()
-    by_id = {verdict.id: verdict for verdict in verdicts}
-    acts = [act for group in plan.beats() for act in group if act.act in known.entries and act.id in by_id]
-    told = [by_id[act.id] for act in acts if act.happens]
-    denied = [by_id[act.id] for act in acts if act.polarity == "not"]
-    shown = {act.id for act in acts if known.entries[act.act].shown}
-    amiss = {
-        "Asked for and not measured": [each.words for each in told if each.done is None and each.id in shown],
-        "Asked for but not seen": [each.words for each in told if each.done is False],
-        "Not so, although the words say it": [each.words for each in denied if each.done is False],
-    }
-    done = _joined([each.words for each in told if each.done])
-    listed = [f"{head}: {'; '.join(dict.fromkeys(words))}." for head, words in amiss.items() if words]
-    return " ".join([done, *listed]).strip()
-
-
-def _joined(clauses: Sequence[str]) -> str:
-    """Clauses as one sentence: those that follow each other with one subject share it."""
-    text, last = "", ""
-    for words in clauses:
-        subject, _, rest = words.partition(" ")
-        text += f" and {rest}" if subject == last else f"{'; ' * bool(text)}{words}"
-        last = "" if _OF_BOTH.search(rest) else subject
-    return f"{text[:1].upper()}{text[1:]}." if text else ""
-
-
-_OF_BOTH = re.compile(r" and [AB] ")
-"""What follows a verb of one in a clause that has one of the other as well."""

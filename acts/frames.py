@@ -202,8 +202,8 @@ class Frame:
                 score += 0.6
             if element.words:
                 score += 0.9
-            if element.family:
-                score += 0.4
+            if element.family:  # a part that a frame itself names is nearer than one of its family
+                score += 0.5 if isinstance(ref, Ref) and ref.lemma in element.family - {ref.family} else 0.4
             if isinstance(ref, Ref):
                 own = ref.who == "ab" or (ref.definite and not ref.who)
                 if element.slot == "b.part" and len(agents) == 2 and own:

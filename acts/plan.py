@@ -175,9 +175,9 @@ class Plan(_Model):
             raise ValueError("people are a and b, in this order")
         return self
 
-    def text(self, span: Span) -> str:
-        """The words of a span."""
-        return self.sentence[span.start : span.stop]
+    def text(self, span: Span | None) -> str:
+        """The words of a span; "" for none."""
+        return self.sentence[span.start : span.stop] if span is not None else ""
 
     def beats(self) -> list[list[Act]]:
         """The acts in groups that happen one after another, each group at the same time; see :func:`beats`."""

@@ -14,8 +14,8 @@ from .accounting import said_words, shown_caption
 from .captions import plural, usual_limb
 from .lexicon import Entry
 from .plan import FROM_BEHIND, ON_TIPTOE, Act
-from .reading.vocabulary import closed, is_act, vocabulary
-from .shapes import Go, Touch
+from .reading.vocabulary import closed, vocabulary
+from .shapes import Gesture, Go, Touch
 
 _BOTH = re.compile(r"\bboth (?:\w+ )?(hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE)
 
@@ -23,11 +23,10 @@ _OF_BOTH = "claps palms_strike both_hands_on hands_high hands_ahead hands_on_hip
 _TWO_HANDED = frozenset((*_OF_BOTH.split(), "holds_in_front"))
 """Predicates that hold of both hands or arms at once."""
 
-OTHER_THING = "which thing"
-"""The kind of qualifier without which an act is not judged: pointing at a door is not pointing at the other person."""
 
-
-def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterator[tuple[str, str]]:
+def qualifiers(
+    act: Act, entry: Entry, who: str, mask: str, said: str, *, to_other: bool = False
+) -> Iterator[tuple[str, str]]:
     """Qualifiers of an act that no rule of its entry measures: each kind of qualifier, and a rule that does, or "".
 
     Args:
@@ -36,13 +35,14 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         who: one of its agents.
         mask: the predicate by which it is seen; "" where it has none.
         said: the act's own words in the sentence.
+        to_other: they name the person to whom it is done.
     """
     rules = " ".join(entry.rule)
     names = set(re.findall(r"\w+", rules))
-    caption = shown_caption(act, entry)
+    caption = shown_caption(act, entry, said)
     words = said_words((caption,))
     goes = next((shape for shape in entry.stage if isinstance(shape, Go)), None)
-    if act.times is not None and not names & {"n", "several"}:
+    if act.times is not None and not (names & {"n", "several"} or (goes and act.distance is not None)):
         yield "how often", ""
     if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
         yield "which side", ""
@@ -66,6 +66,8 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
         yield "how far", way if goes else near
     if act.seconds is not None:
         yield "how long", ""
+    if to_other and entry.to == "other" and mask and all(isinstance(shape, Gesture) for shape in entry.stage):
+        yield "to whom", f"happens(both({mask}, faces({who}, 75)))"
     if FROM_BEHIND in act.manner:
         yield "from where", f"happens(both({mask}, behind({who})))" if mask else ""
     if ON_TIPTOE in act.manner:
@@ -77,9 +79,6 @@ def qualifiers(act: Act, entry: Entry, who: str, mask: str, said: str) -> Iterat
     seen = {"part", vocabulary().part(act.part or "")} & names | {act.part, plural(act.part or "")} & words
     if act.part and not (own or seen or "{part}" in caption or "{limb}" in caption):
         yield "where on the body", ""
-    other = act.thing and "{b}" in caption and not entry.thing and not set(act.thing.split()) & words
-    if other and act.thing not in closed("fillers") and not is_act(act.thing or ""):
-        yield OTHER_THING, ""
 
 
 def plain(act: Act, kinds: frozenset[str]) -> Act:
@@ -90,6 +89,7 @@ def plain(act: Act, kinds: frozenset[str]) -> Act:
         "with both hands": {"side": None},
         "on both sides": {"side": None},
         "which way": {"direction": None, "side": None if act.side == act.direction else act.side},
+        "how far": {"distance": None},
         "how fast": {"manner": (), "speed": 1.0},
         "in which manner": {"manner": ()},
         "from where": {"manner": ()},

@@ -313,7 +313,13 @@ class _Planner:
         if (entry.to == "other" or shared) and len(match.agents) == 1 and not upwards:
             patient = patient or other_of(match.agents)
         given = event.object is None or entry.thing == "throws"
-        answers = event.direction == "back" and patient and given and not goes  # "waves back", "throws it back"
+        last = next(reversed(self._acts), None)
+        same = last is not None and (last.act, last.direction) == (name, None) and last.agents != tuple(match.agents)
+        answers = (
+            event.direction == "back" and (patient or same) and given and not goes
+        )  # "throws it back", "bows back"
+        if answers and same:
+            self._answers.add(number_of)
         owner = None
         if part is not None:
             whose = match.agents if frame.of_agent() else patient or match.agents

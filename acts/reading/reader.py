@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref, best
@@ -55,8 +54,6 @@ class Reader:
                 self._event(token)
             elif token.dep_ == "conj" and token.head.i in self._of:
                 self._gapped(token)
-            elif token.dep_ == "conj":
-                self._also(token)
         self._states()
         self._postures()
         self._sort()
@@ -215,21 +212,6 @@ class Reader:
         self._arguments.fill(token, event)
         self._joints.append((event, token, "with", token.head.i))
 
-    def _also(self, token: Token) -> None:
-        """Adds what is done with a further part of the body: "raises the left arm and the right leg"."""
-        noun = next((t for t in token.ancestors if t.dep_ != "conj"), token)
-        above = self._event_of(noun.head)
-        if noun.dep_ != "dobj" or above is None or above.object is None or above.object.kind != "part":
-            return
-        ref = reference(token, self.cast, above.subject.who if above.subject is not None else "")
-        if ref.kind != "part":
-            return
-        self._arguments.seen.add(token.i)
-        if (ref.family, ref.side) != (above.object.family, above.object.side):
-            last = token.idx + len(token.text)
-            event = replace(above, object=ref, words=list(above.words), noun=None, first=token.idx, last=last)
-            self._joints.append((event, token, "with", noun.head.i))
-
     def _polarity(self, token: Token, head: Token | None, event: Event) -> None:
         children = {child.lower_ for child in token.children if child.dep_ in ("neg", "det", "preconj", "advmod", "cc")}
         subjects = [child for child in token.children if child.dep_ in ("nsubj", "nsubjpass")]
@@ -332,6 +314,8 @@ class Reader:
         if token.dep_ == "pcomp":
             return self._words.marks.get(token.head.lower_, "with"), above.i
         if token.dep_ == "advcl":  # of the nearest in a list: "walks up and hides when she turns"
+            if any(t.lower_ in closed("then") for t in self.doc[token.i : above.i]) and previous is not None:
+                return own or "while", previous  # "A spins while B claps, then they bow"
             listed = (i for i in self._of if above.i < i < token.i and self.doc[i].dep_ == "conj")
             nearest = max((i for i in listed if above in self.doc[i].ancestors), default=above.i)
             return own or "while", nearest if own in ("main-after", "main-until", "after") else above.i

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence, Set
 from acts.frames import Event
 from acts.lexicon import Lexicon, is_fixture
 from acts.plan import Act, Relation
-from acts.shapes import Gesture, Go, Hold, Lift, Shape, Strike
+from acts.shapes import Gesture, Go, Hold, Lift, Place, Shape, Strike
 
 BESIDE = frozenset(("gesture", "limb", "words"))
 """Shapes of what a person can do on their way."""
@@ -66,12 +66,18 @@ def related(
         if kind == "after" and not then and _answers_blow(other, act, known):
             kind = "with"
         if kind == "after":
-            act = acts[act.id] = _upright_again(other, _turned_to(other, act, known), known)
-            kind = "with" if act.act == other.act == "stand-tall" else kind  # "straighten and rise"
+            act = acts[act.id] = _turned_to(other, act, known)
             kind = "with" if _carries(other, known) and _carries(act, known) and other.agents == act.agents else kind
             if _walks_on(other, act, known):
                 kind, act = "with", act.model_copy(update={"act": "walk-ahead", "patient": None, "thing": None})
                 acts[act.id] = act
+        if _shares_load(other, act, known):
+            act = acts[act.id] = act.model_copy(update={"act": "carry-thing", "patient": other.patient})
+        stands, walks = (act, other) if _is_back_to_back(act, known) else (other, act)
+        if _is_back_to_back(stands, known) and _goes(walks, {"along"}, known):  # and not side by side
+            acts[walks.id] = walks.model_copy(update={"act": "part"})
+            relations[walks.id].append(Relation(kind="after", act=stands.id))
+            continue
         apart = not set(other.agents) & set(act.agents)
         waits = _waits(act, known) and not then  # "then she waits" is said of what comes next
         if kind == "after" and apart and (other.already or act.already or waits):
@@ -104,6 +110,16 @@ def _goes(act: Act, ways: Set[str], known: Lexicon) -> bool:
     return any(isinstance(shape, Go) and shape.way in ways for shape in known.entries[act.act].stage)
 
 
+def _is_back_to_back(act: Act, known: Lexicon) -> bool:
+    return any(isinstance(shape, Place) and shape.way == "back to back" for shape in known.entries[act.act].stage)
+
+
+def _shares_load(first: Act, then: Act, known: Lexicon) -> bool:
+    """True for a person who carries what they have lifted with the other: "lifts it with her and carries it out"."""
+    lifted = known.entries[first.act].thing == "carries" and first.patient is not None
+    return lifted and (then.act, then.agents, then.thing) == ("carry-alone", first.agents, first.thing)
+
+
 def _waits(act: Act, known: Lexicon) -> bool:
     return {shape.do for shape in known.entries[act.act].stage} == {"stay"}
 
@@ -132,14 +148,6 @@ def _turned_to(first: Act, then: Act, known: Lexicon) -> Act:
     if not touched or not turns or then.patient or then.direction:
         return then
     return then.model_copy(update={"patient": first.agents[0]})
-
-
-def _upright_again(first: Act, then: Act, known: Lexicon) -> Act:
-    """The act; a person who rises after bending the knees or a lunge was on their feet, and gets up from no seat."""
-    bent = any(shape.do == "limb" for shape in known.entries[first.act].stage)
-    if not bent or then.act != "stand-up" or set(first.agents) != set(then.agents):
-        return then
-    return then.model_copy(update={"act": "stand-tall"})
 
 
 def _walks_on(first: Act, then: Act, known: Lexicon) -> bool:

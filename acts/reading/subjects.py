@@ -202,24 +202,11 @@ class Subjects:
                 self._found[clause.i] = self._subject_of(clause, its_head)
         return self._found[token.i]
 
-    @staticmethod
-    def _is_order(token: Token) -> bool:
-        """True for a bare verb before whose clause another begins: "shake on it, then one of them waves"."""
-        bare = token.tag_ in ("VB", "VBP") and not has(token, "aux", "mark")
-        behind = (c for c in token.head.children if c.dep_ in ("nsubj", "nsubjpass"))
-        return bare and token.dep_ in ("ccomp", "advcl", "dep") and any(token.i < c.i for c in behind)
-
     def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
         if (told := self._told(token, head) or self._called(token) or self._named_before(token)) is not None:
             return told
         if token.dep_ in ("relcl", "acl", "amod") and token.head != head:
-            antecedent = self._antecedent(token)
-            handles = token.tag_ == "VBG" and has(token, "dobj")
-            if antecedent is None or antecedent.kind != "part" or not handles or head is None:
-                return antecedent
-            return self.of(head, self._tree.head(head))  # "they bump heads picking up a pencil"
-        if head is not None and self._is_order(token):
-            return Ref("person", "ab", first=token.idx, last=token.idx)
+            return self._antecedent(token)
         if head is not None:
             own = self.of(head, self._tree.head(head))
             kept = token.dep_ == "pcomp" and token.head.lower_ == "from"  # "stops him from falling"

@@ -336,7 +336,11 @@ class Text:
                 yield name
 
     def left_out(self) -> Iterator[tuple[int, int]]:
-        """Stretches of the original that are not parsed, such as what is said in quotation marks, with their words."""
+        """Stretches of the original that are not parsed, such as what is said in quotation marks, with their words.
+
+        Where somebody is who is "the person on the left" is one.
+        """
+        yield from ((i, j) for word, i, j in self._pieces if word.startswith(("the first ", "the second ")))
         stops = [stop for _, _, stop in self._pieces]
         starts = [start for _, start, _ in self._pieces[1:]]
         for stop, start in zip(stops, [*starts, len(self.original)], strict=True):

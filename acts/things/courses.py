@@ -32,6 +32,8 @@ TABLE = 0.74
 """Height of a table in metres, where the hand does not say it."""
 TABLES = (0.45, 1.0)
 """Heights that a hand may ask for."""
+CHANGES = 0.5
+"""Seconds in which a thing changes from a person's one hand to the other."""
 IN_HAND = frozenset(("holds", "takes", "plays", "fights", "uses", "gives", "drops", "throws", "rolls", "bounces"))
 """What is done with a thing by somebody who has it in their hand, and takes it up or over for that."""
 
@@ -157,6 +159,9 @@ class ThingCourse:
             self._lifts(use)
         elif self.holder != who:
             self._pass(use, self.holder, who)
+        named = SIDES.index(use.side) if use.side else self.side
+        if self.holder == who and named != self.side and not takes_both_hands(self.kind, self.surface):
+            self._take(use.start, who, named, CHANGES)  # into the hand that the words name
         return self.holder == who
 
     def _pass(self, use: Use, giver: int, receiver: int) -> None:

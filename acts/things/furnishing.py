@@ -134,7 +134,7 @@ def grips_of_plan(plan: Plan, hands: Hands, duet: Duet, start: int, stop: int, l
 
 def _of_act(act: Act, plan: Plan, hands: Hands, part: Motion, start: int, first: int, last: int) -> Iterator[Grip]:
     entry = lexicon().entries.get(act.act)
-    words = plan.text(act.words).lower() if act.words else ""
+    words = plan.text(act.words).lower()
     shape = "thumbs up" if _THUMBS.search(words) else entry.hand if entry else ""
     if not shape or entry is None:
         return

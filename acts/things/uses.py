@@ -62,7 +62,7 @@ def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float]) -> list
     """
     uses = []
     for act, first, last in act_frames(plan, start, stop, lengths):
-        words = plan.text(act.words) if act.words else ""
+        words = plan.text(act.words)
         each = (read(act, words, first, last) for read in (_use, _fixture, _door))
         uses += [use for use in each if use]
     return [each for use in _at_desks(uses) for each in _in_turn(use)]

@@ -285,7 +285,10 @@ def test_another_skeleton_is_refused() -> None:
         ("A puts both hands on B's hips.", "A puts both hands on B's hip"),
         ("A kicks with the left foot.", "A kicks B with the left foot"),
         ("A is sitting.", "A sits"),
-        ("A turns away from B.", "A turns away"),
+        ("A turns away from B.", "A turns away from B"),
+        ("A waves.", "A waves"),
+        ("A waves goodbye to her friend.", "A waves at B"),
+        ("Two duelists walk five paces.", "they walk (3.5 m)"),
         ("A pushes B away.", "A pushes B away"),
         ("They look at each other.", "they face each other"),
         ("A drags B across the room.", "A drags B"),
@@ -297,6 +300,12 @@ def test_a_verdict_names_the_thing_and_the_qualifiers_of_the_words(sentence: str
     """And not the caption's example of one."""
     (found,) = checked(read(sentence), duet())
     assert found.words == words
+
+
+@pytest.mark.parametrize("ahead", [True, False])
+def test_who_salutes_somebody_faces_them(ahead: bool) -> None:
+    salutes = duet(put("left_wrist", (0.08, 0.05, 0.1), base="head"), gap=2.0 if ahead else -2.0)
+    assert checked(read("Leo salutes Mia."), salutes)[0].done is ahead
 
 
 def test_who_walks_on_tiptoe_all_along_has_no_flat_stance() -> None:
@@ -404,6 +413,19 @@ def bumped(both: np.ndarray, gap: float) -> None:
     both[0, :, index("left_wrist")] = both[1, :, index("right_wrist")] - [0, 0, gap]
 
 
+def blindfolding(both: np.ndarray, up: float) -> None:
+    for side, x in (("left", 0.06), ("right", -0.06)):
+        both[0, :, index(f"{side}_wrist")] = both[1, :, index("head")] + [x, up, -0.1]
+
+
+def pushing(second: float) -> Motion:
+    """A hand of a on b's chest for a fifth of a second, and b going back from second 1 to 2."""
+    motion, at = duet(), slice(round(30 * second), round(30 * second) + 6)
+    motion.positions[1] += 0.4 * np.clip(np.arange(120) / 30 - 1, 0, 1)[:, None, None] * [0, 0, 1]
+    motion.positions[0, at, index("left_wrist")] = motion.positions[1, at, index("spine3")]
+    return motion
+
+
 def thrust(both: np.ndarray, metres: float, up: float = -0.1) -> None:
     put("left_wrist", (0.0, up, metres), base="left_shoulder")(both)
 
@@ -424,6 +446,8 @@ def thrust(both: np.ndarray, metres: float, up: float = -0.1) -> None:
             2.7,
         ),
         ("swing-sword", for_a_while(lambda both, up: thrust(both, 0.4, up), 6), 0.35, 0.2),
+        ("cover-eyes", for_a_while(blindfolding), 0.05, 0.2),
+        ("push", pushing, 1.0, 3.5),
         ("catch-thing", for_a_while(lambda both, ahead: hands(both, ahead, 0.1)), 0.28, 0.24),
         ("shake-hands", lambda frames: for_a_while(bumped, int(frames))(0.05), 17, 12),
         ("fist-bump", for_a_while(bumped), 0.12, 0.2),

@@ -69,7 +69,7 @@ def test_the_first_that_does_all_is_kept_and_ends_the_tries() -> None:
     assert [(asked.seed, asked.tries) for asked in runs.asked] == [(7, 1), (8, 1)]
     assert found.manifest["tries"] == {"asked": 4, "made": 2, "won": 2, "seed": 8}
     assert [row["done"] for row in found.manifest["checked"]] == [True, True]
-    assert found.manifest["told"] == "A raises the left arm and turns around."
+    assert found.manifest["told"] == "Done: A raises the left arm; A turns around."
     assert found.duets[0].manifest["told"] == found.manifest["told"]  # type: ignore[index, union-attr]
     assert found.notes[0].startswith("Done on the 2nd of 4 tries: ")
     np.testing.assert_array_equal(found.duets[0].positions, ALL.positions.astype("f4"))

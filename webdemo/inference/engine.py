@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from acts.accounting import account
-from acts.checking import NO_RULE, checked, describe
+from acts.checking import NO_RULE, checked
 from acts.plan import PlanFrames
 from acts.things.furnishing import judge_things
 from motion import SMPL22, Clip, Duet, InputError
@@ -322,15 +322,13 @@ def _judged_sample(plans: Sequence[PlanFrames], duet: Duet | Clip, lengths: Sequ
     if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
         return {"checked": []}
     rows: Rows = []
-    words: list[str] = []
     for plan, start, stop, beat in plans:
         verdicts = checked(plan, Motion(duet.positions[:, start:stop], duet.fps))
         split = () if beat is not None else lengths
         end = duet.num_frames if stop is None else stop
         verdicts = judge_things(verdicts, plan, duet, start, end, split)
         rows += [each.to_dict() | ({} if beat is None else {"beat": beat}) for each in verdicts]
-        words.append(describe(plan, verdicts))
-    return {"checked": rows, "told": " ".join(filter(None, words))}
+    return {"checked": rows, "told": note([rows])}
 
 
 # ---- the note --------------------------------------------------------------------------------------------

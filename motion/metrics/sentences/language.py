@@ -159,7 +159,7 @@ def _lack(node: ast.Call, motion: Motion) -> str:
         asked = _value(node.args[1], motion)
         return f"done {count} time{'s' * (count != 1)}, {f'not {asked}' if name == 'exactly' else f'{asked} needed'}"
     if len(calls) > 1:
-        return "all of it is seen, but not in this order"
+        return f"all of it is seen, but not {'at the same time' if name == 'together' else 'in this order'}"
     least = _value(node.args[1], motion) if len(node.args) > 1 else {"mostly": 0.6}.get(name, SHORTEST)
     lasts = longest(seen[0], motion.fps)
     if name == "mostly":

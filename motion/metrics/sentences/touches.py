@@ -83,7 +83,7 @@ def to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
     gaps = np.linalg.norm(points[:, None] - joints[None], axis=-1).min(axis=1)
     there = m.of_trunk(who, points - np.mean([m.joint(who, joint) for joint in BODY[name]], axis=0))
     left, up, ahead = np.moveaxis(there, -1, 0)
-    along = {"aside": np.abs(left), "up": up, "ahead": ahead, "behind": -ahead}
+    along = {"aside": np.abs(left), "up": up, "down": -up, "ahead": ahead, "behind": -ahead}
     for axis, least in _TABLES["where"].get(name, {}).items():
         gaps = np.where(along[axis] < least, np.maximum(gaps, NEARBY), gaps)
     return gaps

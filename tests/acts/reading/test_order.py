@@ -30,11 +30,6 @@ def test_a_particle_that_a_frame_has_is_a_part_of_it(words: str) -> None:
     assert len(read(words).acts) == 1
 
 
-def test_then_at_the_same_time_is_after_what_came_before() -> None:
-    clap, bow = read("They clap, then bow at the same time.").acts
-    assert [(r.kind, r.act) for r in bow.order] == [("after", clap.id)]
-
-
 @pytest.mark.parametrize(
     "words", ["He taps her and hides when she turns around.", "He taps her. When she turns, he hides."]
 )
@@ -58,12 +53,6 @@ def test_clauses_with_only_a_comma_between_them_follow_each_other(words: str, ki
     assert [relation.kind for relation in read(words).acts[1].order] == [kind]
 
 
-@pytest.mark.parametrize("words", ["high-five, walk", "They hug and then part."])
-def test_the_first_of_two_verbs_comes_first(words: str) -> None:
-    first, then = read(words).acts
-    assert not first.order and [(r.kind, r.act) for r in then.order] == [("after", first.id)]
-
-
 def test_who_then_sits_down_was_not_seated_before() -> None:
     man, woman = read("The man sits and the woman then sits next to him.").acts[:2]
     assert man.already and not woman.already
@@ -81,3 +70,36 @@ def test_who_then_sits_down_was_not_seated_before() -> None:
 def test_who_carries_somebody_and_walks_still_carries_them(words: str, walk: str, kind: str) -> None:
     then = read(words).acts[1]
     assert (then.act, [r.kind for r in then.order]) == (walk, [kind])
+
+
+@pytest.mark.parametrize(
+    ("words", "beats"),
+    [
+        ("She taps him on the shoulder, he turns around, and she hugs him.", "pat | turn-around | hug"),
+        ("They walk past each other, then both stop and turn around.", "walk-past | stand-still | turn-around"),
+        ("Two fighters bow, fight for a moment and bow again.", "bow | fight | bow"),
+        ("A sits on the chair until B taps A, then A gets up.", "sit-down | pat | stand-up"),
+        ("He bows and waves at the same time.", "bow wave"),
+        ("They clap, then bow at the same time.", "clap | bow"),
+        ("high-five, walk", "high-five | walk-together"),
+        ("They hug and then part.", "hug | part"),
+        ("A walks forward, then pivots on his foot and does a half turn.", "walk-ahead | turn-around | turn-around"),
+        ("They pat each other on the shoulder and walk away.", "pat | pat | walk-away"),
+        ("A holds on to B's wrist, and B tugs backwards.", "hold-hands pull"),
+        ("A pretends to throw a ball and B ducks.", "throw-ball | duck"),
+        ("A walks around B, who waves.", "walk-around wave"),
+        (
+            "One person waves, turns and bows, while the other waits. Finally they hug.",
+            "wave stand-still | turn-around | bow | hug",
+        ),
+        # an answer, and what both do then
+        ("A spins while B claps, then they bow together.", "spin clap | bow"),
+        ("Someone bows and the other bows back.", "bow | bow"),
+        ("A leans forward and B leans back.", "lean lean"),
+        ("Standing back to back, they walk five paces and turn.", "back-to-back | part | turn-around"),
+        ("A lifts a table with B and carries it out.", "lift-together | carry-thing"),
+        ("They lift a table, then A carries it out.", "lift-together | carry-alone"),
+    ],
+)
+def test_what_follows_and_what_is_done_meanwhile(words: str, beats: str) -> None:
+    assert " | ".join(" ".join(act.act for act in group) for group in read(words).beats()) == beats

@@ -124,20 +124,6 @@ def test_what_is_no_english_is_said(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "beats"),
-    [
-        ("She taps him on the shoulder, he turns around, and she hugs him.", ["pat", "turn-around", "hug"]),
-        ("They walk past each other, then both stop and turn around.", ["walk-past", "stand-still", "turn-around"]),
-        ("Two fighters bow, fight for a moment and bow again.", ["bow", "fight", "bow"]),
-        ("A sits on the chair until B taps A, then A gets up.", ["sit-down", "pat", "stand-up"]),
-        ("He bows and waves at the same time.", ["bow wave"]),
-    ],
-)
-def test_clauses_follow_each_other_as_the_text_says_them(text: str, beats: list[str]) -> None:
-    assert [" ".join(act.act for act in group) for group in read(text).beats()] == beats
-
-
-@pytest.mark.parametrize(
     "text",
     [
         "She inherits a fortune.",
@@ -199,12 +185,6 @@ def test_an_act_that_the_parser_takes_for_a_noun_behind_to_is_read() -> None:
 )
 def test_a_verb_that_is_listed_before_another_is_no_noun(text: str, acts: list[str]) -> None:
     assert [act.act for act in read(text).acts] == acts
-
-
-def test_what_follows_listed_acts_beside_a_wait_follows_the_last_of_them() -> None:
-    plan = read("One person waves, turns and bows, while the other person waits. Finally they hug.")
-    acts = {act.act: act for act in plan.acts}
-    assert ("after", acts["bow"].id) in {(each.kind, each.act) for each in acts["hug"].order}
 
 
 @pytest.mark.parametrize(

@@ -56,11 +56,6 @@ def test_a_usual_name_tells_the_sex(names: str, sexes: str) -> None:
     assert "".join(person.sex for person in read(names).people) == sexes
 
 
-def test_one_who_is_held_tugs_meanwhile() -> None:
-    (relation,) = read("A holds on to B's wrist, and B tugs backwards.").acts[1].order
-    assert relation.kind == "with"
-
-
 def test_who_does_not_flinch_stands_still() -> None:
     for name in ("move-about", "flinch"):
         assert [shape.do for shape in lexicon().entries[name].refused] == ["stay"]
@@ -116,10 +111,3 @@ def test_what_is_done_instead_is_all_that_is_done() -> None:
 )
 def test_who_does_what_to_whom(text: str, acts: list[str]) -> None:
     assert said(text) == acts
-
-
-def test_what_comes_next_follows_what_then_brings() -> None:
-    acts = read("a man walks forward, then pivots on his foot and does a half turn, and claps.").acts
-    assert [[relation.act for relation in act.order] for act in acts] == [[], ["1"], ["2"], ["3"]]
-    acts = read("They pat each other on the shoulder and walk away.").acts
-    assert [[relation.act for relation in act.order] for act in acts] == [[], ["1"], ["2"]]

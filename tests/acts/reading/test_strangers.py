@@ -170,11 +170,6 @@ def only(text: str) -> Act:
     return act
 
 
-def test_an_answer_follows_what_is_only_tried() -> None:
-    _, ducks = read("A pretends to throw a ball and B ducks.").acts
-    assert [(relation.kind, relation.act) for relation in ducks.order] == [("after", "1")]
-
-
 def test_a_noun_is_not_forced_to_be_a_verb() -> None:
     for text in ("Her head swims.", "The flag flaps.", "The bridge kneels.", "He looks at her hands."):
         assert not read(text).acts, text
@@ -194,11 +189,6 @@ def test_a_repeated_act_is_done_with_the_same_side_or_the_one_that_is_named() ->
 def test_a_list_keeps_its_middle(start: str, said: str, act: str, joined: str) -> None:
     acts = [name for name, _, _ in told(joined.format(f"{start}, {said}", "walk away."))]
     assert acts == ["walk-up", act, "walk-away"]
-
-
-def test_who_goes_around_somebody_does_so_while_they_turn() -> None:
-    around, turns = read("A walks around B, who waves.").acts[:2]
-    assert [(each.kind, each.act) for each in turns.order] == [("while", around.id)]
 
 
 def test_words_in_no_act_are_said() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from acts import Plan
+from acts.plan import Relation
 from acts.things.furnishing import furnish
 from motion import SMPL22, Duet
 
@@ -91,6 +92,13 @@ def test_a_thing_stays_with_the_giver_where_hands_never_meet():
     people[1, :, :, 2] += 2.0
     (flower,) = things_of(people, act("hand-over", patient="b", thing="flower"))
     assert np.linalg.norm(flower.places - palms(people)[0], axis=2).max(axis=1).min() < 0.03
+
+
+def test_a_thing_comes_into_the_hand_that_the_words_name_for_what_is_done_with_it():
+    people = reaching()
+    drinks = act("drink", "b", id="2", thing="cup", side="left", order=(Relation(kind="after", act="1"),))
+    (cup,) = things_of(people, act("hand-over", patient="b", thing="cup"), drinks)
+    assert np.linalg.norm(cup.places[115] - palms(people)[1, 0, 115]) < 0.05
 
 
 def test_what_is_taken_was_held_by_the_other():
