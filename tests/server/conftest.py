@@ -54,6 +54,6 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]
     """Where a server listens that waits a second for heads and bodies, and bounds connections."""
     folder = tmp_path_factory.mktemp("served")
     with served_on_loopback(
-        folder, header_seconds=1, body_seconds=1, answer_seconds=3, connections=60, address_connections=50
+        folder, header_seconds=1, body_seconds=1, answer_seconds=3, connections=60, address_connections=25
     ) as address:
         yield address

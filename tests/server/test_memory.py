@@ -65,6 +65,19 @@ def test_calls_leave_nothing_and_pages_stay(client: TestClient, monkeypatch: pyt
     assert len(states.session_data) == 4 and len(states.time_last_used) == 4
 
 
+def test_many_pages_of_one_address_take_no_state_of_others(tmp_path: Path) -> None:
+    """In ten seconds a stranger's new sessions took from everybody what their page shows."""
+    with client_of(settings_for(tmp_path, open=True)) as client:
+        states = states_of(client)
+        client.post(CALL, json={"data": FIELDS, "session_hash": "a page"})
+        assert states.bindings.home("a page") == "127.0.0.1"
+    states.capacity = 6
+    for i, session in enumerate(["ada's", "bob's", *"abcdefgh"]):
+        states.bindings.check(session, f"visitor {i}", "192.0.2.1" if i < 2 else "192.0.2.2", begin=True)
+        _ = states[session]
+    assert set(states.session_data) == {"a page", "ada's", "bob's", *"fgh"}
+
+
 GAPS = """
 import os, pathlib
 from webdemo.server.process import give_back

@@ -101,7 +101,7 @@ def closed(connections: list[socket.socket]) -> int:
 def test_a_flood_from_many_addresses_leaves_the_page_up(served: tuple[str, int]) -> None:
     with ExitStack() as flood:
         found = [flood.enter_context(connect(served, f"127.0.1.{i % 4 + 1}")) for i in range(80)]
-        assert closed(found[60:]) == 20  # of all it takes 60, of one address 50
+        assert closed(found[48:]) == 32  # of each it takes 12, as many as are left
     wait_for(lambda: answers(served))
 
 
@@ -115,7 +115,7 @@ def forwarded(served: tuple[str, int], address: str, times: int = 1, path: str =
 
 def test_behind_a_proxy_each_connection_counts_for_its_stranger(served: tuple[str, int]) -> None:
     with ExitStack() as flood:
-        mine = [flood.enter_context(forwarded(served, "203.0.113.7")) for _ in range(50)]
+        mine = [flood.enter_context(forwarded(served, "203.0.113.7")) for _ in range(25)]
         for connection in mine:
             assert answer_to(connection).startswith(b"HTTP/1.1 ")
         one_more = flood.enter_context(forwarded(served, "203.0.113.7"))
@@ -190,7 +190,7 @@ def test_thousands_of_connections(served: tuple[str, int]) -> None:
         with ExitStack() as flood:
             found = [flood.enter_context(connect(served)) for _ in range(many)]
             assert answers(served, "127.0.0.9")
-            assert closed(found[60:]) == many - 60
+            assert closed(found[25:]) == many - 25
         wait_for(lambda: answers(served))
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))

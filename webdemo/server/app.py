@@ -121,7 +121,7 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     gr.mount_gradio_app(app, page, path="/", root_path=settings.root_path or None, **options)
     page.has_launched = True  # a mounted page's is never set, and without it Gradio hands any file out
     (mounted,) = [r.app for r in app.routes if isinstance(r, Mount) and isinstance(r.app, App)]
-    keep_states_lean(mounted, page)
+    keep_states_lean(mounted, page, lab.bindings)
     keep_files_apart(mounted)
     mend_uploads()
     gradio.utils.SyncToAsyncIterator.aclose = close_in_a_thread  # type: ignore[method-assign]

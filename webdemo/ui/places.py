@@ -37,8 +37,7 @@ class Places:
     @contextmanager
     def place(self) -> Iterator[None]:
         """Waits for a place and holds it."""
-        who = visitor()
-        person = who.address or who.person
+        person = visitor().source
         with self._change:
             self._waiting.append(person)
             try:

@@ -30,6 +30,11 @@ class Visitor:
     account: str = ""
     address: str = ""
 
+    @property
+    def source(self) -> str:
+        """The address, or the person where addresses do not count: to whom shares are given."""
+        return self.address or self.person
+
 
 LOCAL = Visitor()
 """The user of a page that runs without the server."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -20,12 +21,24 @@ from webdemo.server.http.routes import Refused
     [("ada", "", "person"), ("new", "near", "address"), ("new", "far", "everybody"), ("new", "", "everybody")],
 )
 def test_each_share_is_counted(person: str, address: str, whose: str) -> None:
-    quota = Quota("runs waiting", person=2, address=3, everybody=5)
+    quota = Quota("runs waiting", person=2, address=3, everybody=8)
     held = [("ada", ""), ("ada", ""), ("a", "near"), ("b", "near"), ("c", "near")]
+    held += [] if whose == "address" else [(name, "") for name in "def"]
     with pytest.raises(OverQuota, match="runs waiting") as refused:
         quota.check(person, address, held)
     assert refused.value.whose == whose
     quota.check("new", "far", held[:4])
+
+
+def test_whoever_takes_all_they_can_leaves_some_to_others() -> None:
+    """Three addresses filled the queue of events with what each of them may have, and nobody else was let in."""
+    quota, held = Quota("tasks", person=16, address=128, everybody=320), list[tuple[str, str]]()
+    for i in range(3 * 320):
+        with suppress(OverQuota):
+            quota.check(f"visitor {i}", f"192.0.2.{i % 3}", held)
+            held.append((f"visitor {i}", f"192.0.2.{i % 3}"))
+    assert len(held) == 3 * 80
+    quota.check("new", "192.0.2.9", held)
 
 
 def test_quotas_are_those_of_the_settings(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ import pytest
 from motion import InputError
 from motion.formats.importing import import_motion
 from tests.motion.bodies import marching
+from tests.motion.formats.arrays import npy, npz
 from tests.motion.formats.characters import glb_motion
 from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo.inference.story.toml import read_story
@@ -138,22 +139,17 @@ def test_requests_end_in_no_error_of_the_programs(target: Target) -> None:
 
 def samples() -> dict[str, bytes]:
     """A whole file of every kind that is read."""
-    import io
-
     import numpy as np
 
     positions, rotations = marching(30)
     bvh = bvh_text(rotations, positions[:, 0], RIGS["mixamo"], unit=100, frame_time=1 / 30).encode()
-    array, archive = io.BytesIO(), io.BytesIO()
-    np.save(array, positions.astype(np.float32))
-    np.savez(archive, positions=positions.astype(np.float32), fps=30.0)
     body = b"".join(b"%d.0 %d.5 2.5 0 0 0 0 0 0 0 0 2\n" % (j % 3, j % 5) for j in range(25))
     skeleton = b"5\n" + (b"1\n7 0 0 0 0 0 0 0 0 2\n25\n" + body) * 5
     sbu = b"\n".join(b"%d," % i + b",".join(b"0.%d" % (k % 9 + 1) for k in range(90)) for i in range(5))
     return {
         "a.bvh": bvh,
-        "a.npy": array.getvalue(),
-        "a.npz": archive.getvalue(),
+        "a.npy": npy(positions.astype(np.float32)),
+        "a.npz": npz(positions=positions.astype(np.float32), fps=np.array(30.0)),
         "a.skeleton": skeleton,
         "a.txt": sbu,
         "a.glb": glb_motion(rotations, positions[:, 0]),

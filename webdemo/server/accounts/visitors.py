@@ -78,15 +78,20 @@ class Bindings:
     """
 
     def __init__(self) -> None:
-        self._owners: OrderedDict[str, str] = OrderedDict()
+        self._owners: OrderedDict[str, tuple[str, str]] = OrderedDict()
         self._lock = threading.Lock()
 
-    def check(self, name: object, person: str, *, begin: bool = False, known: bool = False) -> None:
+    def home(self, name: str) -> str:
+        """Where a session comes from, see :attr:`.Visitor.source`; "" if it is unknown."""
+        return self._owners.get(name, ("", ""))[1]
+
+    def check(self, name: object, person: str, source: str = "", *, begin: bool = False, known: bool = False) -> None:
         """Raises Refused if a session or call is another person's.
 
         Args:
             name: of the session or call.
             person: who uses it.
+            source: theirs.
             begin: makes an unknown one theirs.
             known: refuses an unknown one.
         """
@@ -95,9 +100,9 @@ class Bindings:
         if len(name) > 100:
             raise Refused(400, "The session's name is too long: reload the page.", "forged")
         with self._lock:
-            owner = self._owners.get(name)
+            owner, _ = self._owners.get(name, (None, ""))
             if owner is None and begin:
-                self._owners[name] = person
+                self._owners[name] = person, source
                 while len(self._owners) > _MOST:
                     self._owners.popitem(last=False)
             elif owner is not None:

@@ -93,7 +93,7 @@ def bounded_protocol(settings: Settings, quota: Quota) -> type[H11Protocol]:
             address = network_of(host)
             if address != self.address:
                 self._count(None)
-                if counts[address] >= quota.address:
+                if counts[address] >= min(quota.address, quota.left(len(self.connections))):
                     self._send_away()
                     return False
                 self._count(address)

@@ -15,12 +15,13 @@ from urllib.parse import parse_qs, quote, urlsplit
 
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from motion import InputError
-from webdemo.server.accounts.quotas import OverQuota, Quota, RateLimit, network_of
+from webdemo.server.accounts.quotas import OverQuota, Quota, network_of
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, YEAR, find_visitor, new_token, set_cookie
 from webdemo.server.audit import SENDER
 from webdemo.server.lab import Lab
@@ -100,7 +101,10 @@ class Guard:
         except ClientDisconnect:  # in the middle of a body: there is nobody to answer
             pass
         except Exception as error:
-            await exchange.refuse(self._refusal_of(error, exchange))
+            if exchange.status and isinstance(error.__cause__, HTTPException):  # Gradio found out in an open stream
+                await send({"type": "http.response.body"})
+            else:
+                await exchange.refuse(self._refusal_of(error, exchange))
         finally:
             self._held.pop(exchange, None)
             self._note(exchange, scope)
@@ -224,14 +228,11 @@ class Guard:
             weight, limits = self._weight(scope, headers), (self.quotas.requests, self.quotas.address_requests)
         else:
             weight, limits = _DEAR_WEIGHT if path in _DEAR else 1.0, (self.quotas.gets, self.quotas.address_gets)
-        self._take(visitor or nobody, weight, *limits)
+        who, (person, everybody) = visitor or nobody, limits
+        person.take(who.person, weight)
+        if who.address:  # deleting the cookie does not make a new visitor
+            everybody.take(who.address, weight)
         return visitor
-
-    @staticmethod
-    def _take(visitor: Visitor, weight: float, person: RateLimit, address: RateLimit) -> None:
-        person.take(visitor.person, weight)
-        if visitor.address:  # deleting the cookie does not make a new visitor
-            address.take(visitor.address, weight)
 
     def _visitor_cookie(self, scope: Scope) -> str:
         response, root, secure = Response(), self.settings.root_path, scope["scheme"] == "https"
@@ -268,7 +269,7 @@ class Guard:
             self._hold(self.quotas.large, exchange, visitor)
         body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds)
         if not is_upload(path) and path.startswith(API):
-            self._check_call(await body.whole(), visitor.person, path)
+            self._check_call(await body.whole(), visitor, path)
         return body
 
     def _hold(self, quota: Quota, exchange: Exchange, visitor: Visitor) -> None:
@@ -290,7 +291,7 @@ class Guard:
         way, _, name = path[len(API) :].partition("/")
         return self.payloads.number_of(name.partition("/")[0]) if way in ("call", "run", "api") else None
 
-    def _check_call(self, body: bytes, person: str, path: str) -> None:
+    def _check_call(self, body: bytes, visitor: Visitor, path: str) -> None:
         endpoint = self._endpoint(path)
         if not body:
             return
@@ -305,12 +306,12 @@ class Guard:
             fields.pop("fn_index", None)  # Gradio calls what the address names
         if (endpoint is not None or path.startswith(f"{API}queue/join")) and fields.get("data") is None:
             fields["data"] = []  # as many values as a function without inputs takes
-        self.payloads.check(fields, endpoint, person)
+        self.payloads.check(fields, endpoint, visitor.person)
         session, event = fields.get("session_hash"), fields.get("event_id")
         if session is not None:
-            self.bindings.check(session, person, begin=True)
+            self.bindings.check(session, visitor.person, visitor.source, begin=True)
         if event is not None:
-            self.bindings.check(event, person, known=True)
+            self.bindings.check(event, visitor.person, known=True)
 
     # ---- whose -----------------------------------------------------------------------------------
 

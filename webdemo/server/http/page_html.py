@@ -7,13 +7,15 @@ import asyncio
 import re
 import struct
 import zlib
-from collections import deque
+from collections import Counter, deque
 from typing import Any
 
 from gradio.blocks import Blocks
 from gradio.routes import App
 from gradio.state_holder import SessionState, StateHolder
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from webdemo.server.accounts.visitors import Bindings
 
 PATHS = ("/", "/config")
 _ANY = b"any-host.invalid"
@@ -41,13 +43,9 @@ class Page:
         # After a full flush a name may follow, since nothing behind it refers to what is before.
         self.packed = [packer.compress(part) + packer.flush(zlib.Z_FULL_FLUSH) for part in self.parts]
 
-    def plain(self, host: bytes) -> bytes:
-        """The body for a name."""
-        return host.join(self.parts)
-
     def gzip(self, host: bytes) -> bytes:
         """The packed body for a name, which is a block that is stored as it is."""
-        plain = self.plain(host)
+        plain = host.join(self.parts)
         stored = struct.pack("<BHH", 0, len(host), len(host) ^ 0xFFFF) + host
         return _GZIP_HEAD + stored.join(self.packed) + _GZIP_END + struct.pack("<II", zlib.crc32(plain), len(plain))
 
@@ -82,7 +80,7 @@ class PageCache:
         if b"gzip" in sent.get(b"accept-encoding", b""):
             headers, body = [*headers, (b"content-encoding", b"gzip")], made.gzip(host)
         else:
-            body = made.plain(host)
+            body = host.join(made.parts)
         headers.append((b"content-length", b"%d" % len(body)))
         await send({"type": "http.response.start", "status": made.status, "headers": headers})
         for start in range(0, len(body), _PIECE):
@@ -142,23 +140,36 @@ class LeanState(SessionState):
 
 
 class LeanStates(StateHolder):
-    """The most recent states: ``capacity`` of pages and clients, :data:`CALLS` of single calls."""
+    """The most recent states: ``capacity`` of all, :data:`CALLS` of them of single calls.
 
-    def __init__(self) -> None:
+    The address, or the person, that has most of them gives one up first: many new pages take none of others'.
+
+    Args:
+        bindings: knows whose each session is.
+    """
+
+    def __init__(self, bindings: Bindings) -> None:
         super().__init__()
+        self.bindings = bindings
         self._calls: deque[str] = deque()
 
     def __getitem__(self, session_id: str) -> SessionState:
         with self.lock:
             if session_id not in self.session_data:
+                if len(self.session_data) >= self.capacity:
+                    homes = {session: self.bindings.home(session) for session in self.session_data}
+                    ((most, _),) = Counter(homes.values()).most_common(1)
+                    self._drop(next(session for session, home in homes.items() if home == most))
                 self.session_data[session_id] = LeanState(self.blocks)
                 if _CALL.match(session_id):
                     self._calls.append(session_id)
                     if len(self._calls) > CALLS:
-                        gone = self._calls.popleft()
-                        self.session_data.pop(gone, None)
-                        self.time_last_used.pop(gone, None)
+                        self._drop(self._calls.popleft())
         return super().__getitem__(session_id)
+
+    def _drop(self, session: str) -> None:
+        self.session_data.pop(session, None)
+        self.time_last_used.pop(session, None)
 
 
 def kept_in_cache(page: Blocks) -> set[str]:
@@ -166,7 +177,7 @@ def kept_in_cache(page: Blocks) -> set[str]:
     return {str(file) for block in page.blocks.values() for file in getattr(block, "keep_in_cache", ())}
 
 
-def keep_states_lean(app: App, page: Blocks) -> None:
+def keep_states_lean(app: App, page: Blocks, bindings: Bindings) -> None:
     """Gives the application of a page :class:`LeanStates`."""
-    app.state_holder = LeanStates()
+    app.state_holder = LeanStates(bindings)
     app.state_holder.set_blocks(page)

@@ -97,7 +97,7 @@ class FairEvents(Queue):
         self.accounts.meet(who.person, {person for person, _ in known})
         taken, event, state = await super().push(body, request, username)
         if taken:
-            self.bindings.check(event, who.person, begin=True)
+            self.bindings.check(event, who.person, who.source, begin=True)
         return taken, event, state
 
     def get_events(self) -> tuple[list[Event], bool, str] | None:
@@ -144,7 +144,7 @@ class FairEvents(Queue):
         if event.concurrency_id == READING_EVENTS:
             now = time.monotonic()
             self._rests = {source: until for source, until in self._rests.items() if until > now}
-            self._rests[_source(event)] = now + REST * seconds
+            self._rests[visitor_of(event.request).source] = now + REST * seconds
 
     def _able(self, group: EventQueue, running: list[Event], busy: Counter[str]) -> Iterator[Event]:
         """The events of a group that may begin now, in order of arrival."""
@@ -155,11 +155,11 @@ class FairEvents(Queue):
         if group.current_concurrency >= limit:
             return
         share, now = max(1, limit // 2), time.monotonic()
-        here = Counter(_source(event) for event in running if event.concurrency_id == group.concurrency_id)
+        here = Counter(visitor_of(one.request).source for one in running if one.concurrency_id == group.concurrency_id)
         for event in group.queue:
-            if event.concurrency_id == READING_EVENTS and self._rests.get(_source(event), 0.0) > now:
-                continue
-            if busy[visitor_of(event.request).person] < AT_ONCE and here[_source(event)] < share:
+            who = visitor_of(event.request)
+            rests = event.concurrency_id == READING_EVENTS and self._rests.get(who.source, 0.0) > now
+            if not rests and busy[who.person] < AT_ONCE and here[who.source] < share:
                 yield event
 
     def _waits_elsewhere(self, event: Event) -> bool:
@@ -211,9 +211,3 @@ async def close_in_a_thread(closing: Any, timeout: float = 60.0, pause: float = 
             if "already executing" not in str(error) or time.monotonic() > until:
                 raise
         await asyncio.sleep(pause)
-
-
-def _source(event: Event) -> str:
-    """The account, or the address of a person without one."""
-    who = visitor_of(event.request)
-    return who.address or who.person

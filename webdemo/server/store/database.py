@@ -229,7 +229,7 @@ class Database:
             if inspect(connection).get_table_names():
                 raise InputError(
                     f"{self.engine.url.database} was made by another version of Pas de Deux (schema {schema}; this one "
-                    f"knows {SCHEMA}): move its folder away to begin anew, or install that version."
+                    f"has {SCHEMA}): export the runs with that version, move the folder, and import them in History."
                 )
             Table.metadata.create_all(connection)
             connection.exec_driver_sql(f"PRAGMA user_version = {SCHEMA}")

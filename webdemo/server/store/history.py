@@ -109,9 +109,9 @@ class History:
             self._write(run, result)
             there, gone = self._enter(run, json.dumps(outcome), thumbnail(result.duets[0]))
         except Exception as error:  # whatever it is, the result itself is there
-            reason = sentence_of(error)
+            reason = str(sentence_of(error)).replace(f"{self.folder}/.{run}/", "")
             self.storage.drop([run])
-            self.end(run, "failed", str(reason))
+            self.end(run, "failed", reason)
             raise InputError(f"{reason} Download the result's files now.") from None
         self.storage.drop(gone if there else [run])  # its owner removed it while it ran
 

@@ -124,9 +124,10 @@ class Scratch:
         """Removes files of a folder that are not in use until so much room is made; returns their number and bytes."""
         now, gone, freed = time.time(), 0, 0
         for made, weight, path in sorted(_files(folder)):
-            if freed >= size or now - made < IN_USE_SECONDS:
+            if freed >= size:
                 break
-            if path not in keep and _remove(path):
+            in_use = 0 <= now - made < IN_USE_SECONDS  # the clock may have been set back
+            if not in_use and path not in keep and _remove(path):
                 gone, freed = gone + 1, freed + weight
         return gone, freed
 

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
 
+from gradio.context import LocalContext
+
 from motion import Clip, Duet, InputError
 from webdemo.inference.requests.actor import finite
 from webdemo.inference.requests.predict import PredictResult
@@ -52,10 +54,14 @@ Drawn = Callable[[int, int], None]
 
 
 def in_time(progress: Drawn | None = None) -> Drawn:
-    """Hears as ``progress`` does, from now on, and raises InputError once :data:`DRAWN_IN` has passed."""
+    """Hears as ``progress`` does, from now on; raises InputError after :data:`DRAWN_IN`, or if its client has left."""
     until = time.monotonic() + DRAWN_IN
+    page, own = LocalContext.blocks.get(None), LocalContext.event_id.get(None)
 
     def hear(done: int, total: int) -> None:
+        jobs = page._queue.active_jobs if page is not None else []
+        if any(event._id == own and not event.alive for job in jobs for event in job or ()):
+            raise InputError("The client that asked for this film has closed its connection: ask again.")
         if time.monotonic() > until:
             raise InputError(
                 f"Of {total:,} pictures {done:,} were drawn in {DRAWN_IN / 60:.0f} minutes: ask for fewer pixels, "
