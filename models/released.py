@@ -82,7 +82,7 @@ class _StandIn(dict[Any, Any]):
         pass
 
 
-def read_tensors(path: str | Path, *, network: str) -> dict[str, Tensor]:
+def read_tensors(path: str | Path, *, network: str, mark: str = "") -> dict[str, Tensor]:
     """The tensors of a checkpoint by name; they are mapped from the file and read when they are used.
 
     A PyTorch file is opened with ``weights_only=True``, so no code in it runs; ``.safetensors`` files hold
@@ -92,6 +92,7 @@ def read_tensors(path: str | Path, *, network: str) -> dict[str, Tensor]:
     Args:
         path: of the file.
         network: what it should be, for messages.
+        mark: the beginning of one of its names: a prefix of :data:`WRAPPED` before that is left out.
 
     Raises:
         WeightsError: if the file is missing, truncated, holds objects other than tensors, or no tensors.
@@ -103,16 +104,9 @@ def read_tensors(path: str | Path, *, network: str) -> dict[str, Tensor]:
     records = max(_records(checkpoint), key=len, default={})
     if not records:
         raise WeightsError(f"{path.name} holds no tensors: use the released {network} checkpoint.")
-    return dict(records)
-
-
-def without_wrapper(tensors: Mapping[str, Tensor], mark: str) -> dict[str, Tensor]:
-    """The tensors without a prefix of :data:`WRAPPED` that stands before the name which begins with ``mark``."""
-    for prefix in WRAPPED:
-        if any(name.startswith(prefix + mark) for name in tensors):
-            kept = {name: value for name, value in tensors.items() if name.startswith(prefix)}
-            return {name.removeprefix(prefix): value for name, value in kept.items()}
-    return dict(tensors)
+    wrapped = (prefix for prefix in WRAPPED if mark and any(name.startswith(prefix + mark) for name in records))
+    before = next(wrapped, "")
+    return {name.removeprefix(before): value for name, value in records.items() if name.startswith(before)}
 
 
 def with_prefix(tensors: Mapping[str, Tensor], prefix: str) -> dict[str, Tensor]:

@@ -267,7 +267,7 @@ def _words(name: str) -> list[str]:
         part = re.sub(r"[\d０-９_.]", "", name[1:] if side else name)
         if part in _JAPANESE:
             return [*side, _JAPANESE[part]]
-    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name)]
+    return [word.lower() for word in re.findall(r"(?i:left|right)|[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name)]
 
 
 def _shared(words: Sequence[list[str]], end: int) -> str:

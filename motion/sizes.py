@@ -104,15 +104,9 @@ def _stepping(own: Array, size: float, way: float, free: Array, now: float = 1.0
     reaches = [_STRAIGHT * limb_length(small, leg)[:, None] for leg in LEGS]
     need = sink([small[:, leg[0]] for leg in LEGS], goals, reaches, _SINKS * size * now)
     small[..., 1] -= (upright * begun_before(need, _STRIDE, _EASED))[:, None]
-    return on_legs(small, goals, facing(own))
-
-
-def on_legs(person: Array, ankles: list[Array], forward: Array) -> Array:
-    """A person (T, 22, 3) whose legs end at ``ankles``, two of (T, 3); feet keep their directions."""
-    result = person.copy()
-    for leg, goal in zip(LEGS, ankles, strict=True):
-        ankle_moved(result, leg, goal, forward)
-    return result
+    for leg, goal in zip(LEGS, goals, strict=True):
+        ankle_moved(small, leg, goal, facing(own))
+    return small
 
 
 def _lifted(own: Array, other: Array) -> Array:

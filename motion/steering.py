@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .clip import FPS
-from .limbs import solve_two_bones
+from .limbs import limb_length, sink, solve_two_bones
 from .skeleton import LEGS, SMPL22
 from .smoothing import minimum_jerk
 from .transforms import facing, heading, heading_matrix
@@ -154,7 +154,8 @@ class Steps:
         self._begin_a_step([goal[0] for goal in goals], STEP_FROM if moving else REST_FROM)
         goals = [(place + ahead, foot) for place, foot in goals]
         feet = [self._foot(side, goals[side], moving=moving) for side in range(2)]
-        pose[:, 1] -= max(_too_high(pose, leg, place) for leg, (place, _) in zip(LEGS, feet, strict=True))
+        hips, ankles = [pose[None, leg[0]] for leg in LEGS], [place[None] for place, _ in feet]
+        pose[:, 1] -= sink(hips, ankles, [limb_length(pose[None], leg)[:, None] - 1e-5 for leg in LEGS], np.inf)
         for (hip, knee, ankle, toe), (place, foot) in zip(LEGS, feet, strict=True):
             pose[knee], pose[ankle] = solve_two_bones(pose[hip], pose[knee], pose[ankle], place, facing(pose))
             pose[toe] = pose[ankle] + foot
@@ -189,14 +190,6 @@ class Steps:
             stand = (goal[0] + FADE * (stand[0] - goal[0]), _turned(goal[1], stand[1], FADE))
             self._stands[side] = stand if np.linalg.norm(stand[0] - goal[0]) > 1e-3 else None
         return stand
-
-
-def _too_high(pose: Array, leg: tuple[int, ...], place: Array) -> float:
-    """Metres by which a body is to be lowered so that its leg reaches an ankle's place (3,)."""
-    hip, knee, ankle = (pose[joint] for joint in leg[:3])
-    length = float(np.linalg.norm(knee - hip) + np.linalg.norm(ankle - knee)) - 1e-5
-    aside = float(np.linalg.norm((hip - place) * FLAT))
-    return max(0.0, float(hip[1] - place[1]) - float(np.sqrt(max(length**2 - aside**2, 0.0))))
 
 
 def _turned(first: Array, second: Array, share: float) -> Array:

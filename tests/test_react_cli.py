@@ -9,8 +9,7 @@ import pytest
 
 from motion import SMPL22, Clip, Duet, InputError
 from motion.formats import ImportChoices, read, write
-from motion.kinematics import forward_kinematics
-from tests.motion.bodies import marching
+from tests.motion.bodies import marching, swaying
 from tests.motion.formats.characters import glb_takes
 from webdemo import cli
 from webdemo.cli import generation
@@ -19,11 +18,7 @@ from webdemo.inference.run import Result
 
 
 def standing(frames: int, x: float = 0.0) -> Clip:
-    """A person who sways a little."""
-    root = np.zeros((frames, 3))
-    root[:, 0] = x + 0.05 * np.sin(np.linspace(0, 6, frames))
-    root[:, 1] = 0.9562
-    return Clip(forward_kinematics(np.tile(np.eye(3), (frames, 22, 1, 1)), root), 30.0, SMPL22)
+    return Clip(swaying(frames, x), 30.0, SMPL22)
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 
 from models.errors import WeightsError
-from models.released import read_tensors, with_prefix, without_wrapper
+from models.released import read_tensors, with_prefix
 from models.text.clip import ClipTokenizer, ClipTower, tower_from_released
 from models.weights_io import Uninitialised
 from motion.skeleton import NTU25
@@ -57,7 +57,7 @@ def load_released(checkpoint: Path, vocabulary: Path) -> ReleasedBiGraphDiff:
         WeightsError: if the file is missing, damaged, another network's, or lacks its text side.
         VocabularyError: if the vocabulary is not CLIP's.
     """
-    tensors = without_wrapper(read_tensors(checkpoint, network=NETWORK), "joint_embed_1.")
+    tensors = read_tensors(checkpoint, network=NETWORK, mark="joint_embed_1.")
     frozen = with_prefix(tensors, CLIP)
     if not frozen:
         raise WeightsError(f"{checkpoint.name} holds no {CLIP}* tensors, CLIP's tower: use the released file.")

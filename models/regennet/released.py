@@ -14,7 +14,7 @@ import torch
 from torch import Tensor
 
 from models.errors import WeightsError
-from models.released import read_tensors, without_wrapper
+from models.released import read_tensors
 from models.weights_io import Uninitialised
 from motion import SMPL22
 from motion.kinematics import fit_rotations, forward_kinematics
@@ -35,7 +35,7 @@ def load_released(checkpoint: Path) -> ReGenNet:
     Raises:
         WeightsError: if the file is missing, damaged, another network's, or of people with other joints.
     """
-    tensors = without_wrapper(read_tensors(checkpoint, network=NETWORK), "input_process.")
+    tensors = read_tensors(checkpoint, network=NETWORK, mark="input_process.")
     latent_dim = len(tensors.get("input_process.poseEmbedding.weight", ()))
     with Uninitialised():
         network = from_released(tensors, num_heads=max(1, latent_dim // HEAD_WIDTH))

@@ -50,12 +50,10 @@ def read(
     Raises:
         InputError: one sentence saying what is wrong with the file and what to do.
     """
-    label = name or ("" if isinstance(path, bytes) else str(path))
+    label = Path(name or ("" if isinstance(path, bytes) else path)).name
     imported = import_motion(path, name=name, choices=choices)
     if (count := len(imported.people)) > 2:
-        raise InputError(
-            f"{Path(label).name} holds {count} people: choose one on the React tab, or save one or two of them."
-        )
+        raise InputError(f"{label} holds {count} people: choose one on the React tab, or save one or two of them.")
     if longest is not None and (seconds := imported.people[0].seconds) > longest:
         raise InputError(f"{label} lasts {seconds:.0f} s: cut it to {longest:g} s or less.")
     return imported.motion

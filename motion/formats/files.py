@@ -118,7 +118,7 @@ def check_smpl(motion: Clip | Duet, kind: str) -> None:
     """Raises InputError for people who are not on SMPL22, whose T-pose is known; ``kind`` is what needs it."""
     if motion.skeleton.joint_names != SMPL22.joint_names:
         raise InputError(
-            f"{kind} needs a rest pose and SMPL's 22 joints, not {motion.skeleton.name}'s: retarget the motion."
+            f"{kind} needs a rest pose and SMPL's 22 joints, not {motion.skeleton.name}'s: see motion.retarget.to_smpl."
         )
 
 

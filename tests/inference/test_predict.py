@@ -101,7 +101,7 @@ def test_where_a_motion_lies_changes_nothing(predicting: Engine) -> None:
         ({"motion": walker(0.5)}, "The past is 0.50 s long, and 1 s or more is needed: give a longer motion."),
         ({"motion": walker(61.0)}, "The motion lasts 61 s: cut it to 60 s or less."),
         ({"seconds": 9.0}, "Length must be from 0.5 to 4 seconds, not 9."),
-        ({"motion": Clip(np.zeros((60, 15, 3)), 30.0, SBU15)}, "not SMPL's 22"),
+        ({"motion": Clip(np.zeros((60, 15, 3)), 30.0, SBU15)}, "SMPL's 22 joints, not sbu15's"),
     ],
 )
 def test_what_cannot_be_predicted_is_one_sentence(asked: dict, sentence: str) -> None:

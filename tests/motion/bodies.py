@@ -14,6 +14,14 @@ from motion.kinematics import forward_kinematics
 FPS = 30.0
 
 
+def swaying(frames: int = 40, x: float = 0.0) -> np.ndarray:
+    """(T, 22, 3) metres: a person in T-pose who sways, float32."""
+    root = np.zeros((frames, 3))
+    root[:, 0] = x + 0.05 * np.sin(np.linspace(0, 6, frames))
+    root[:, 1] = 0.9562
+    return forward_kinematics(np.tile(np.eye(3), (frames, 22, 1, 1)), root).astype(np.float32)
+
+
 def marching(frames: int = 60, *, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """Someone who marches forward, swings the arms and nods.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +13,7 @@ from motion.hands import SHAPES, Grip, angles
 from motion.looks import LOOKS
 from motion.skeleton import SIDES
 from tests.motion.bodies import marching
+from tests.motion.formats.arrays import npz
 
 POSE = SMPL22.rest_positions()[None] + np.array([0.0, 0.95, 0.0])
 PEOPLE = Duet.from_positions(np.stack([marching(60)[0], marching(60, seed=1)[0] + 1.0]), fps=30)
@@ -73,7 +73,6 @@ def test_grips_come_back_from_our_file(tmp_path):
     ],
 )
 def test_damaged_grips_are_one_sentence(text):
-    buffer = io.BytesIO()
-    np.savez(buffer, positions=PEOPLE.positions, fps=np.float64(30), grips=np.array(text))
+    data = npz(positions=PEOPLE.positions, fps=np.float64(30), grips=np.array(text))
     with pytest.raises(InputError, match=r"^x\.npz"):
-        formats.read(buffer.getvalue(), name="x.npz")
+        formats.read(data, name="x.npz")

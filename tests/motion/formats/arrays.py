@@ -14,8 +14,8 @@ def npz(**arrays: np.ndarray) -> bytes:
     return buffer.getvalue()
 
 
-def npy(array: np.ndarray) -> bytes:
+def npy(array: np.ndarray, *, allow_pickle: bool = False) -> bytes:
     """A .npy."""
     buffer = io.BytesIO()
-    np.save(buffer, array)
+    np.save(buffer, array, allow_pickle=allow_pickle)
     return buffer.getvalue()

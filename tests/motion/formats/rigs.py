@@ -68,6 +68,7 @@ RIGS = {
     "a suffix": _rig(_SUFFIXED, _LIMBS, "{Side}{part}_Bob"),
     "mikumikudance": _rig("センター 上半身 - 上半身2 首 頭", "肩 腕 ひじ 手首 足 ひざ 足首 つま先", "{字}{part}"),
 }
+RIGS["capitals"] = {joint: name.upper() for joint, name in RIGS["motionbuilder"].items()}
 
 
 def bvh_text(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import io
 import re
 import time
 import tracemalloc
@@ -20,6 +19,7 @@ from motion.formats.recording import ImportChoices
 from motion.rigs import RigMotion
 from tests.motion.bodies import marching
 
+from .arrays import npy, npz
 from .characters import packed
 from .test_markers import c3d_bytes, keypoints, trc_text
 
@@ -68,10 +68,7 @@ HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
 
 def _with(**arrays: np.ndarray) -> bytes:
     """A .npz of two people, a few kilobytes packed, with further arrays."""
-    people = np.stack([marching(30)[0]] * 2)
-    file = io.BytesIO()
-    np.savez_compressed(file, **{"positions": people, "fps": np.array(30.0), **arrays})  # type: ignore[arg-type]
-    return file.getvalue()
+    return npz(**{"positions": np.stack([marching(30)[0]] * 2), "fps": np.array(30.0), **arrays})
 
 
 def _with_parameters() -> bytes:
@@ -135,23 +132,15 @@ VALID: dict[str, Callable[[], bytes]] = {
     "full.trc": lambda: _markers(188, 35_400),
     "full.c3d": lambda: _recorded(250, 12_800),
     "full.txt": lambda: b"\n".join([b"1," + b",".join([b"0.4", b"0.5", b"0.6"] * 30)] * 9_000),
-    "full.npy": lambda: _saved(np.linspace(0, 1, 2 * 36_000 * 22 * 3, dtype=np.float32).reshape(2, -1, 22, 3)),
+    "full.npy": lambda: npy(np.linspace(0, 1, 2 * 36_000 * 22 * 3, dtype=np.float32).reshape(2, -1, 22, 3)),
     "full.npz": lambda: _turned(36_000),
 }
 
 
 def _turned(frames: int) -> bytes:
     """SMPL's parameters as matrices of a byte a number."""
-    made = io.BytesIO()
     turns = np.tile(np.eye(3, dtype=np.int8), (frames, 60, 1, 1))
-    np.savez_compressed(made, poses=turns, trans=np.zeros((frames, 3), np.float32))
-    return made.getvalue()
-
-
-def _saved(array: np.ndarray) -> bytes:
-    made = io.BytesIO()
-    np.save(made, array)
-    return made.getvalue()
+    return npz(poses=turns, trans=np.zeros((frames, 3), np.float32))
 
 
 @pytest.mark.slow

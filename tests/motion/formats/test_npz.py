@@ -16,22 +16,11 @@ from motion.formats.smpl import PELVIS
 from motion.representation import decode_positions, encode_person
 from motion.transforms import turn
 from tests.motion.bodies import as_stored, marching
+from tests.motion.formats.arrays import npy, npz
 
 A, ROTATIONS = marching(20)
 B = turn(marching(20, seed=1)[0], np.pi) + np.array([0, 0, 2.0])
 DUET = Duet.from_positions(np.stack([A, B]), fps=30, roles=("actor", "reactor"), manifest={"seed": 3, "text": "Gruß"})
-
-
-def _npz(**arrays) -> bytes:
-    buffer = io.BytesIO()
-    np.savez(buffer, **arrays)
-    return buffer.getvalue()
-
-
-def _npy(array, *, allow_pickle: bool = False) -> bytes:
-    buffer = io.BytesIO()
-    np.save(buffer, array, allow_pickle=allow_pickle)
-    return buffer.getvalue()
 
 
 def test_npz_keeps_the_contract_and_comes_back(tmp_path):
@@ -56,17 +45,17 @@ def test_other_skeletons_come_back(skeleton, tmp_path):
 
 
 def test_npy_forms():
-    assert isinstance(formats.read(_npy(A), name="a.npy"), Clip)
-    assert isinstance(formats.read(_npy(A[None]), name="a.npy"), Clip)
-    duet = formats.read(_npy(DUET.positions), name="a.npy", choices=formats.ImportChoices(fps=25))
+    assert isinstance(formats.read(npy(A), name="a.npy"), Clip)
+    assert isinstance(formats.read(npy(A[None]), name="a.npy"), Clip)
+    duet = formats.read(npy(DUET.positions), name="a.npy", choices=formats.ImportChoices(fps=25))
     assert isinstance(duet, Duet) and duet.fps == 25
     features = np.concatenate([encode_person(person) for person in DUET.positions], axis=-1)
     np.testing.assert_allclose(
-        formats.read(_npy(features), name="a.npy").positions, decode_positions(features), atol=1e-6
+        formats.read(npy(features), name="a.npy").positions, decode_positions(features), atol=1e-6
     )
     raw = np.random.default_rng(0).normal(size=(5, 492))
     floor = raw[:, 2:66:3].min()
-    np.testing.assert_allclose(formats.read(_npy(raw), name="a.npy").positions[:, 0, 1], raw[:, 2] - floor, atol=1e-6)
+    np.testing.assert_allclose(formats.read(npy(raw), name="a.npy").positions[:, 0, 1], raw[:, 2] - floor, atol=1e-6)
 
 
 def test_amass_is_turned_upright_and_put_on_the_floor():
@@ -75,7 +64,7 @@ def test_amass_is_turned_upright_and_put_on_the_floor():
     rotations[:, 0] = to_z_up @ rotations[:, 0]
     poses = np.zeros((20, 156))
     poses[:, :66] = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec().reshape(20, 66)
-    data = _npz(poses=poses, trans=A[:, 0] @ to_z_up.T - PELVIS, mocap_framerate=np.array(120.0), betas=np.zeros(16))
+    data = npz(poses=poses, trans=A[:, 0] @ to_z_up.T - PELVIS, mocap_framerate=np.array(120.0), betas=np.zeros(16))
     clip = formats.read(data, name="amass.npz")
     assert clip.fps == 120
     np.testing.assert_allclose(clip.positions, A, atol=1e-5)
@@ -108,23 +97,23 @@ def _with_header(shape: str) -> bytes:
     ("data", "name", "message"),
     [
         (b"", "x.npz", "empty"),
-        (_npz(positions=A)[:-200], "x.npz", "not a whole .npz"),
-        (_npz(motion=A), "x.npz", "none of 'positions'"),
-        (_npz(positions=np.full((2, 3, 22, 3), np.nan)), "x.npz", "NaN"),
-        (_npz(positions=np.full((2, 3, 22, 3), 1e9)), "x.npz", "metres"),
-        (_npz(positions=np.zeros((9, 5, 22, 3))), "x.npz", "holds 9 people"),
-        (_npz(positions=np.zeros((5, 7, 3))), "x.npz", "7 joints"),
-        (_npz(positions=A, fps=np.array(np.nan)), "x.npz", "frame rate"),
-        (_npz(positions=A, joint_names=np.array(["a"] * 22)), "x.npz", "not known"),
-        (_npz(positions=DUET.positions, manifest=np.array("{")), "x.npz", "JSON"),
-        (_npz(positions=np.zeros((20000, 22, 3))), "x.npz", "600 s"),
-        (_npz(poses=np.zeros((5, 10)), trans=np.zeros((5, 3))), "x.npz", "66 or more"),
-        (_npz(positions=np.array([_Bomb()], dtype=object)), "x.npz", "Python objects"),
+        (npz(positions=A)[:-200], "x.npz", "not a whole .npz"),
+        (npz(motion=A), "x.npz", "none of 'positions'"),
+        (npz(positions=np.full((2, 3, 22, 3), np.nan)), "x.npz", "NaN"),
+        (npz(positions=np.full((2, 3, 22, 3), 1e9)), "x.npz", "metres"),
+        (npz(positions=np.zeros((9, 5, 22, 3))), "x.npz", "holds 9 people"),
+        (npz(positions=np.zeros((5, 7, 3))), "x.npz", "7 joints"),
+        (npz(positions=A, fps=np.array(np.nan)), "x.npz", "frame rate"),
+        (npz(positions=A, joint_names=np.array(["a"] * 22)), "x.npz", "not known"),
+        (npz(positions=DUET.positions, manifest=np.array("{")), "x.npz", "JSON"),
+        (npz(positions=np.zeros((20000, 22, 3))), "x.npz", "600 s"),
+        (npz(poses=np.zeros((5, 10)), trans=np.zeros((5, 3))), "x.npz", "66 or more"),
+        (npz(positions=np.array([_Bomb()], dtype=object)), "x.npz", "Python objects"),
         (_zip_bomb(), "x.npz", "unpack"),
-        (_npy(np.array([_Bomb()], dtype=object), allow_pickle=True), "x.npy", "Python objects"),
+        (npy(np.array([_Bomb()], dtype=object), allow_pickle=True), "x.npy", "Python objects"),
         (pickle.dumps(_Bomb()), "x.npy", "not a NumPy"),
         (_with_header("(2, 1000000000, 22, 3)"), "x.npy", "another size"),
-        (_npy(A)[:-8], "x.npy", "another size"),
+        (npy(A)[:-8], "x.npy", "another size"),
     ],
 )
 def test_wrong_files_are_refused_in_one_sentence(data, name, message):
@@ -134,11 +123,10 @@ def test_wrong_files_are_refused_in_one_sentence(data, name, message):
 
 
 def test_mdms_results_are_read_turned_and_never_unpickled():
-    clip = formats.read(_npy(A.transpose(1, 2, 0)), name="motion.npy")
+    clip = formats.read(npy(A.transpose(1, 2, 0)), name="motion.npy")
     np.testing.assert_allclose(clip.positions, A, atol=1e-6)
-    buffer = io.BytesIO()
-    np.save(buffer, np.array({"motion": _Bomb()}, dtype=object), allow_pickle=True)
+    results = npy(np.array({"motion": _Bomb()}, dtype=object), allow_pickle=True)
     with pytest.raises(
         InputError, match=r'`numpy\.save\("motion\.npy", results\["motion"\]\[0\]\.transpose\(2, 0, 1\)\)`'
     ):
-        formats.read(buffer.getvalue(), name="results.npy")
+        formats.read(results, name="results.npy")

@@ -9,19 +9,10 @@ from motion import SMPL22, Duet
 FPS = 30
 
 
-def standing() -> np.ndarray:
-    """(22, 3) the T-pose on the floor, at the origin, facing +Z."""
-    return SMPL22.standing()
-
-
-def turned(pose: np.ndarray) -> np.ndarray:
-    """The pose turned half round, facing −Z."""
-    return pose * np.array([-1.0, 1.0, -1.0])
-
-
 def face_to_face(distance: float = 2.0, *, frames: int = 60) -> np.ndarray:
     """(2, T, 22, 3) two people who stand still in T-pose and face each other."""
-    a, b = standing(), turned(standing()) + np.array([0.0, 0.0, distance])
+    a = SMPL22.standing()
+    b = a * [-1.0, 1.0, -1.0] + np.array([0.0, 0.0, distance])
     return np.stack([np.tile(a, (frames, 1, 1)), np.tile(b, (frames, 1, 1))])
 
 

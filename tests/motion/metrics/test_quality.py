@@ -13,7 +13,7 @@ from motion.metrics.bodies import CAPSULES, segment_segment_distance
 from motion.metrics.quality import bone_drift, foot_skate, jerk, limb_depth, naturalness, penetration
 from motion.transforms import turn
 
-from .scenes import FPS, duet, face_to_face, standing
+from .scenes import FPS, duet, face_to_face
 
 
 def test_still_people_have_no_skate_no_jerk_and_no_drift() -> None:
@@ -45,7 +45,7 @@ def test_bone_drift_is_the_spread_of_lengths_in_percent() -> None:
 
 def test_penetration_is_zero_apart_and_the_radii_when_spines_meet() -> None:
     assert penetration(duet(face_to_face(2.0))).max() == 0
-    inside = penetration(duet(np.stack([np.tile(standing(), (10, 1, 1))] * 2)))
+    inside = penetration(duet(np.stack([np.tile(SMPL22.standing(), (10, 1, 1))] * 2)))
     assert inside == pytest.approx(24, abs=1e-3), "two spines of 12 cm radius in one place"
 
 

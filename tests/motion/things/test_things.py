@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 from dataclasses import replace
 
@@ -12,10 +11,12 @@ import pytest
 import trimesh
 
 from motion import Duet, InputError, formats
+from motion.formats.npz import arrays_of
 from motion.formats.usd import usd_bytes
 from motion.looks import hex_of, linear
 from motion.things import FURNITURE, KINDS, Mesh, Thing, shape
 from tests.motion.bodies import marching
+from tests.motion.formats.arrays import npz
 
 FRAMES = 12
 PEOPLE = Duet.from_positions(np.stack([marching(FRAMES)[0], marching(FRAMES, seed=1)[0] + 1.0]), fps=30)
@@ -82,13 +83,9 @@ def test_things_come_back_from_our_file(tmp_path):
 
 def _damaged(**changes) -> bytes:
     """A file of ours with some arrays replaced; None leaves one out."""
-    buffer = io.BytesIO()
     duet = Duet(PEOPLE.a, PEOPLE.b, things=(thrown(),))
-    from motion.formats.npz import arrays_of
-
     arrays = {"positions": duet.positions, "fps": np.float64(30), **arrays_of(duet.things)} | changes
-    np.savez_compressed(buffer, **{key: value for key, value in arrays.items() if value is not None})
-    return buffer.getvalue()
+    return npz(**{key: value for key, value in arrays.items() if value is not None})
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from models.diffusion import sample_noise
 from models.interformer.compact import FPS as NETWORK_FPS
 from models.interformer.compact import JOINTS_15, CompactInterFormer
 from models.interformer.network import NETWORK, WIDTH, InterFormer, from_released
-from models.released import read_tensors, without_wrapper
+from models.released import read_tensors
 from models.weights_io import load_network
 from motion import FPS, SMPL22, Clip
 from motion.ik import fit_skeleton
@@ -165,7 +165,7 @@ class ReleasedInterFormerPipeline(InterFormerPipeline):
 
 def load_released(checkpoint: Path) -> InterFormer:
     """The network of the authors' file; raises WeightsError for any other one."""
-    tensors = without_wrapper(read_tensors(checkpoint, network=NETWORK), "encoder.layers.")
+    tensors = read_tensors(checkpoint, network=NETWORK, mark="encoder.layers.")
     return from_released(tensors).requires_grad_(False)
 
 

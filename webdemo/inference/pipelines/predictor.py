@@ -16,7 +16,7 @@ from motion.cleaning import foot_contacts, plant_feet
 from motion.kinematics import bone_lengths, bone_vectors, chained
 from motion.transforms import heading, heading_matrix
 from motion.vectors import FLAT, Array, unit
-from webdemo.inference.requests.predict import PredictRequest, mean_steps, predicted
+from webdemo.inference.requests.predict import PredictRequest, mean_step, mean_steps, predicted
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 _STILL = 1e-3
@@ -51,9 +51,8 @@ def without_jump(past: Array, future: Array, largest: Array) -> Array:
         future: (P, F, J, 3) metres.
         largest: (P,) metres.
     """
-    step = future[:, 0] - past[:, -1]
-    size = np.linalg.norm(step, axis=-1).mean(-1)
-    excess = np.maximum(1 - largest / np.maximum(size, 1e-9), 0.0)[:, None, None] * step
+    size = mean_step(past[:, -1], future[:, 0])
+    excess = np.maximum(1 - largest / np.maximum(size, 1e-9), 0.0)[:, None, None] * (future[:, 0] - past[:, -1])
     fade = _SEAM_FADE ** np.arange(future.shape[1])
     return future - fade[:, None, None] * excess[:, None]
 
@@ -68,7 +67,7 @@ def fitted_to_past(past: Array, future: Array) -> Array:
     asked = largest
     for _ in range(_SEAM_TRIES):
         made = above_floor(past, with_bones_of(past[:, -1], without_jump(past, future, asked)))
-        step = np.linalg.norm(made[:, 0] - past[:, -1], axis=-1).mean(-1)
+        step = mean_step(past[:, -1], made[:, 0])
         if np.all(step <= largest):
             break
         # The bone and floor corrections lengthened the step again: ask for a shorter one.
@@ -241,15 +240,6 @@ def with_planted_feet(past: Array, future: Array, fps: float) -> Array:
             held=np.arange(2 * len(after)) < len(after),
         )
         planted = whole[len(after) :]
-        if _step(before[-1], planted[0]) <= max(_step(before[-1], after[0]), _largest_step(before)):
+        if mean_step(before[-1], planted[0]) <= max(mean_step(before[-1], after[0]), mean_steps(before).max()):
             made[person] = planted + floor
     return made
-
-
-def _step(before: Array, after: Array) -> float:
-    """Mean distance of the joints (22, 3) of two poses."""
-    return float(np.linalg.norm(after - before, axis=-1).mean())
-
-
-def _largest_step(positions: Array) -> float:
-    return float(np.linalg.norm(np.diff(positions, axis=0), axis=-1).mean(-1).max())

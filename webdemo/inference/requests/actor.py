@@ -16,6 +16,7 @@ import numpy as np
 
 from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.formats import ImportChoices
+from motion.formats.files import check_smpl
 from motion.formats.importing import import_motion
 from motion.kinematics import bone_lengths
 from motion.retarget import to_smpl
@@ -156,11 +157,7 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
     """
     if not isinstance(clip, Clip):
         raise InputError("The actor must be one person's clip: of two people, choose person a or b.")
-    if clip.skeleton.joint_names != SMPL22.joint_names:
-        raise InputError(
-            f"The actor has the joints of {clip.skeleton.name}, not SMPL's 22: bring the clip onto them "
-            "with motion.retarget.to_smpl."
-        )
+    check_smpl(clip, "A reaction")
     check_length(clip, seconds)
     actor = at_30_fps(clip)
     size = float(bone_lengths(actor.positions).sum(-1).mean() / SMPL22.bone_lengths.sum())

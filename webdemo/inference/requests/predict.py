@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from motion import FPS, SMPL22, Clip, Duet, InputError, stacked_positions
+from motion.formats.files import check_smpl
 from motion.vectors import Array
 from webdemo.inference import methods
 from webdemo.inference.run import Result
@@ -110,11 +111,7 @@ def check_motion(motion: Any, longest: float = LONGEST) -> Clip | Duet:
     """A motion at 30 fps on SMPL22's joints; raises InputError for another, and for one longer than ``longest``."""
     if not isinstance(motion, Clip | Duet):
         raise InputError("Give the motion of one person or of two to predict from.")
-    if motion.skeleton.joint_names != SMPL22.joint_names:
-        raise InputError(
-            f"The motion has the joints of {motion.skeleton.name}, not SMPL's 22: bring it onto them "
-            "with motion.retarget.to_smpl."
-        )
+    check_smpl(motion, "A network")
     if motion.seconds > longest:
         raise InputError(f"The motion lasts {motion.seconds:.0f} s: cut it to {longest:g} s or less.")
     if isinstance(motion, Duet):
@@ -165,9 +162,14 @@ class PredictResult(Result):
         return with_people(motion, np.concatenate([stacked_positions(motion), stacked_positions(self.truth)], axis=1))
 
 
+def mean_step(before: Array, after: Array) -> Array:
+    """(…) mean distance of the joints of two poses (…, J, 3)."""
+    return np.asarray(np.linalg.norm(after - before, axis=-1).mean(-1))
+
+
 def mean_steps(positions: Array) -> Array:
     """(…, T, J, 3) → (…, T − 1) mean distance per joint from frame to frame."""
-    return np.linalg.norm(np.diff(positions, axis=-3), axis=-1).mean(-1)
+    return mean_step(positions[..., :-1, :, :], positions[..., 1:, :, :])
 
 
 def predicted(request: PredictRequest, futures: Sequence[Array]) -> PredictResult:
