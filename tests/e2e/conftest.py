@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import socket
 import subprocess
 import sys
 import time
@@ -19,6 +18,8 @@ from types import SimpleNamespace
 from urllib.parse import urlsplit
 
 import pytest
+
+from tests.server.lab import free_port
 
 from .plain import serve
 from .playing import press
@@ -230,12 +231,6 @@ def shared_page(request: pytest.FixtureRequest, server: SimpleNamespace, open_ke
     yield page
     if request.session.testsfailed > failed:
         kept_tabs.close()
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,7 @@
 
 import copy
 import sys
-import threading
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -125,19 +125,12 @@ def test_threads_share_a_network(tmp_path: Path) -> None:
     assert compile_network(made, "weights", tmp_path)
     questions = [inputs(made, 2, 5 + i) for i in range(4)]
     expected = [made(*question) for question in questions]
-    wrong = []
 
-    def ask(i: int) -> None:
-        for _ in range(20):
-            if not torch.equal(made(*questions[i]), expected[i]):
-                wrong.append(i)
+    def same(i: int) -> bool:
+        return all(torch.equal(made(*questions[i]), expected[i]) for _ in range(20))
 
-    threads = [threading.Thread(target=ask, args=(i,)) for i in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not wrong
+    with ThreadPoolExecutor(4) as threads:
+        assert all(threads.map(same, range(4)))
 
 
 def test_coarser_numbers_stay_near(tmp_path: Path) -> None:

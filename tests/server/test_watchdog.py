@@ -23,7 +23,7 @@ from webdemo.server.process import watch
 
 async def main(freezes):
     looks = []
-    asyncio.create_task(watch(lambda: looks.append(1), silent_seconds=3 if freezes else 60, every=0.01))
+    asyncio.create_task(watch(lambda: looks.append(1), silent_seconds=1 if freezes else 60, every=0.01))
     while len(looks) < 20:
         await asyncio.sleep(0.01)
     print("watched", flush=True)
@@ -42,7 +42,7 @@ def test_a_frozen_interpreter_is_ended_from_outside_of_it(what: str, code: int) 
 
 
 def test_a_run_without_progress_ends_the_process(tmp_path: Path) -> None:
-    with Target(tmp_path, accounts=True, stuck_seconds=8, exit_when_stuck=1) as target:
+    with Target(tmp_path, accounts=True, stuck_seconds=4, exit_when_stuck=1) as target:
         data = ["They hang.", *FIELDS[1:]]
         assert target.ask("ada", "POST", "/gradio_api/call/generate", json={"data": data}).status_code == 200
         target.process.join(240)

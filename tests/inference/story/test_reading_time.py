@@ -16,18 +16,16 @@ from webdemo.inference.story.sentences import as_scene
 LONGEST = 500
 """The longest prompt that the page takes, in characters."""
 _READ = """
-import sys
 from acts import read
-for before in ("", "A man "):
-    read(before + sys.argv[1])
+for word in ("slowly", "eagerly"):
+    for before in ("", "A man "):
+        read((before + f"{word} " * 70)[:500])
 """
 
 
-@pytest.mark.parametrize("word", ["slowly", "eagerly"])
-def test_an_adverb_repeated_is_read_at_once(word):
+def test_an_adverb_repeated_is_read_at_once():
     """Each of these once matched in two ways, and forty of them in 2⁴⁰."""
-    text = f"{word} " * (LONGEST // (len(word) + 1))
-    subprocess.run([sys.executable, "-c", _READ, text], check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", _READ], check=True, timeout=60)
 
 
 REPEATED = (

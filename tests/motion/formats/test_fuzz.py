@@ -90,7 +90,7 @@ CHOICES = st.builds(
     animation=st.sampled_from([None, 1, 2, 6, 7, 10**12, "3", "IDLE", "x" * 5000, "\u202ewalk\n\ud800", "٣", "²"]),
 )
 PATIENT = settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=80, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 

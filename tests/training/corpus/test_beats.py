@@ -19,7 +19,7 @@ def library() -> Library:
 
 def test_free_scenes_are_sound(library: Library) -> None:
     made = jolts = 0
-    for seed in range(12):
+    for seed in range(8):
         try:
             scene = script.compose(np.random.default_rng(seed), library)
         except LookupError:
@@ -34,7 +34,7 @@ def test_free_scenes_are_sound(library: Library) -> None:
         assert all(len(beat["captions"]) >= 1 for beat in scene.beats)
         assert len(scene.captions) >= 3 and min(map(len, scene.alone)) >= 1
         assert all(source.startswith("train") for source in scene.sources) and scene.split == "train"
-    assert made >= 10 and jolts <= 1
+    assert made >= 6 and jolts <= 1
 
 
 def test_one_comes_the_other_stands_they_touch_and_one_leaves(library: Library) -> None:

@@ -141,10 +141,9 @@ def test_captions_that_repeat_a_sentence_are_refused() -> None:
     assert not any(kept_out(sentence.words) for sentence in read_sentences(PATH)), "none is one of the eighty"
 
 
-@pytest.mark.parametrize("number", range(4))
 @pytest.mark.parametrize("split", ["train", "test"])
-def test_no_caption_of_the_corpus_is_a_sentence(number: int, split: str) -> None:
-    for acts in CUES[number::12]:
+def test_no_caption_of_the_corpus_is_a_sentence(split: str) -> None:
+    for acts in CUES[::12]:
         captions = captions_of(acts, split)
         assert captions, acts
         assert [caption for caption in captions if kept_out(caption) or kept_out(caption, PATH)] == []
