@@ -39,8 +39,9 @@ def test_every_kind_of_job_comes_back(tmp_path: Path, monkeypatch: pytest.Monkey
     monkeypatch.setattr(load, "REST_SECONDS", 0.1)
     monkeypatch.setattr(load, "PROBE_EVERY", 0.1)
     monkeypatch.setenv("PASDEDEUX_GRACE_SECONDS", "1")
+    monkeypatch.setenv("PASDEDEUX_EVENTS", "8")
     assert len(attackers.large_trc()) < Settings.model_fields["upload_megabytes"].default * 2**20
-    for name, less in (("FRAMES", 200), ("EVENTS", 30), ("TOP_UP", 2), ("PAGES", 4), ("UNREAD", 5), ("MESSAGES", 10)):
+    for name, less in (("FRAMES", 200), ("EVENTS", 12), ("TOP_UP", 2), ("PAGES", 4), ("UNREAD", 5), ("MESSAGES", 10)):
         monkeypatch.setattr(attackers, name, less)  # each way is tried, in a fraction of the time
     people = len(KINDS)
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # as in a shell's background job

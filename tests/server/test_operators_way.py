@@ -4,10 +4,7 @@ against servers in processes of their own. Sign-in by a proxy has tests in ``acc
 from __future__ import annotations
 
 import json
-import os
 import shutil
-import subprocess
-import sys
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -16,7 +13,6 @@ import httpx
 
 from .attacks.target import Target
 from .clients import FIELDS
-from .lab import ROOT
 
 PASSWORD = "a password of ada's"
 DONE = "SELECT owner, id FROM runs WHERE state = 'done'"
@@ -35,19 +31,6 @@ class Way(Target):
             "free_megabytes = 0\ngrace_seconds = 1\n"
         )
         self.env = {"PASDEDEUX_SETTINGS": str(self.settings)}
-
-    def shell(self, *words: str, given: str = "", code: int = 0) -> dict[str, Any]:
-        """What ``python -m webdemo …`` answers."""
-        said = subprocess.run(
-            [sys.executable, "-m", "webdemo", *words],
-            cwd=ROOT,
-            env={**os.environ, **self.env},
-            input=given,
-            capture_output=True,
-            text=True,
-        )
-        assert said.returncode == code, said.stderr
-        return json.loads(said.stdout.splitlines()[-1]) if code == 0 else {"error": said.stderr}
 
     @contextmanager
     def browser(self, name: str, password: str) -> Any:

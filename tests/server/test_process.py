@@ -122,13 +122,13 @@ def test_killed_while_it_works_started_again_and_stopped(start: Any, tmp_path: P
     with pytest.raises(InputError, match="run it again"):
         kept.open(lost.id, "local")
     server.wait_for(lambda: server.get("/healthz").status_code == 200)  # its networks work
-    place = server.ask(60)
+    place = server.ask(40)
     with httpx.stream("GET", place, timeout=120) as stream:
         server.wait_for(lambda: b"pasdedeux_queue_running 1.0" in server.get("/metrics").content)
         server.process.send_signal(signal.SIGTERM)
         lines = list(stream.iter_lines())
     assert [line for line in lines if line.startswith("event: ")][-1] == "event: complete"
-    assert answer_of("\n".join(lines))["manifest"]["request"]["steps"] == 60
+    assert answer_of("\n".join(lines))["manifest"]["request"]["steps"] == 40
     said = server.process.communicate(timeout=60)[0]
     assert server.process.returncode in (0, -signal.SIGTERM)
     assert "OUTSIDE" not in said and "Traceback" not in said

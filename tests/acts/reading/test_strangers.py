@@ -138,6 +138,8 @@ from tests.acts.reading.reading import told
             [("raise-arm", "a", None), ("scratch-head", "a", None), ("lower-arm", "a", None)],
         ),
         ("A figure jumps, and it waves.", [("jump", "a", None), ("wave", "a", "b")]),
+        # a particle that only says which way
+        ("A tiptoes up and taps B on the shoulder.", [("sneak", "a", None), ("pat", "a", "b")]),
         # verbs that mean too many things stand for no others
         ("A man walks and hops sideways.", [("walk-ahead", "a", None), ("jump", "a", None)]),
         ("A man walks down a ramp.", [("walk-ahead", "a", None)]),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import multiprocessing
 import os
@@ -9,22 +11,24 @@ import secrets
 import sqlite3
 import time
 import zipfile
-from contextlib import closing
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import httpx
+import pytest
 
+from webdemo.cli import main
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.storage import Storage
 
 from ..lab import add_accounts, free_port, serve_apart
 
-_READY = multiprocessing.get_context("forkserver")
-_READY.set_forkserver_preload(["tests.server.ready"])
+READY = multiprocessing.get_context("forkserver")
+READY.set_forkserver_preload(["tests.server.ready"])
+"""Makes processes in which all that a server needs is imported."""
 CANARY = "the canary that nobody may read"
 
 
@@ -56,7 +60,7 @@ class Target:
     def __enter__(self) -> Target:
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "STUB_PAUSE": str(self.stub_pause), **self.env}
         given = (self.port, str(self.data), str(self.folder / "log"), environment)
-        self.process = _READY.Process(target=serve_apart, args=given, daemon=True)
+        self.process = READY.Process(target=serve_apart, args=given, daemon=True)
         self.process.start()
         until = time.monotonic() + 240
         while not self.healthy():
@@ -141,9 +145,19 @@ class Target:
         (path,) = self.ask(who, "POST", "/gradio_api/upload", files={"files": (name, content)}).json()
         return path
 
+    def shell(self, *words: str, given: str = "") -> dict[str, Any]:
+        """What ``python -m webdemo …`` answers under the server's settings, in the process of the tests."""
+        said = io.StringIO()
+        with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            for name, value in {**self.env, "PASDEDEUX_DATA": str(self.data)}.items():
+                patch.setenv(name, value)
+            patch.setattr("sys.stdin", io.StringIO(given))
+            assert main(words) == 0, said.getvalue()
+        return json.loads(said.getvalue().splitlines()[-1])
+
     def rows(self, query: str) -> list[tuple[Any, ...]]:
         """What the server's database answers."""
-        with closing(sqlite3.connect(self.data / "history.db")) as database:
+        with contextlib.closing(sqlite3.connect(self.data / "history.db")) as database:
             return database.execute(query).fetchall()
 
     def publish(self, owner: str, run: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import sqlite3
 from contextlib import closing
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from motion import InputError
+from tests.server.attacks.target import READY
 from webdemo.server.store.database import Database
 
 
@@ -28,8 +28,7 @@ def _open(file: Path) -> None:
 
 
 def test_several_processes_open_a_new_one_at_once(tmp_path: Path) -> None:
-    context = multiprocessing.get_context("spawn")
-    processes = [context.Process(target=_open, args=(tmp_path / "history.db",)) for _ in range(3)]
+    processes = [READY.Process(target=_open, args=(tmp_path / "history.db",)) for _ in range(3)]
     for process in processes:
         process.start()
     for process in processes:

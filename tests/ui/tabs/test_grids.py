@@ -97,7 +97,10 @@ def test_two_axes_are_columns_and_rows_and_one_axis_wraps() -> None:
             grid_of(axes)
 
 
-def test_a_grid_is_made_shown_measured_and_written(tab: GenerateTab, tmp_path: Path) -> None:
+def test_a_grid_is_made_shown_measured_and_written(
+    tab: GenerateTab, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("webdemo.ui.components.film.film.SIZE", (160, 90))
     steps = run(tab, "seed", "1-2", "damping", "0, 0.7")
     asked = [(r.seed, r.damping, r.samples) for r in tab.page.engine.requests]
     assert asked == [(1, 0.0, 1), (2, 0.0, 1), (1, 0.7, 1), (2, 0.7, 1)]
