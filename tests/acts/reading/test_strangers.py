@@ -140,6 +140,8 @@ from tests.acts.reading.reading import told
         ("A figure jumps, and it waves.", [("jump", "a", None), ("wave", "a", "b")]),
         # a particle that only says which way
         ("A tiptoes up and taps B on the shoulder.", [("sneak", "a", None), ("pat", "a", "b")]),
+        # a verb within a word
+        ("They line-dance.", [("dance", "ab", None)]),
         # verbs that mean too many things stand for no others
         ("A man walks and hops sideways.", [("walk-ahead", "a", None), ("jump", "a", None)]),
         ("A man walks down a ramp.", [("walk-ahead", "a", None)]),
