@@ -112,3 +112,12 @@ def test_the_network_is_not_told_what_is_not_done(text: str) -> None:
     assert scene is not None and all("kiss" not in beat.sentence for beat in scene.beats)
     done = as_scene(GenerateRequest(prompt="They walk up to each other and kiss.", seconds=8.0))
     assert done is not None and any("kiss" in beat.sentence for beat in done.beats)
+
+
+def test_an_act_that_the_network_makes_of_words_alone_has_those_that_it_knows() -> None:
+    pat_a_cake, waves = (
+        as_scene(GenerateRequest(prompt=text, seconds=6.0)) for text in ("Two kids play patty cake.", "A kid waves.")
+    )
+    assert pat_a_cake is not None and waves is not None
+    assert pat_a_cake.beats[0].sentence == "They clap hands with each other."
+    assert waves.beats[0].sentence == "A kid waves."

@@ -322,6 +322,10 @@ def _beats(request: GenerateRequest, script: Plan) -> tuple[Beat, ...]:
 
 
 def _in_captions(request: GenerateRequest, script: Plan) -> bool:
-    """True where the network reads its acts' captions: of an edited plan, and for acts whose names it never learned."""
-    own = lexicon().own
-    return request.acts is not None or any(act.happens and act.act in own for act in script.acts)
+    """True where the network reads its acts' captions: of an edited plan, and where it has to know an act's words.
+
+    It never learned the names of a lab's own acts, and an act without a shape is made from its words alone.
+    """
+    known = lexicon()
+    listed = [act.act for act in script.acts if act.happens and act.act in known.entries]
+    return request.acts is not None or any(name in known.own or not known.entries[name].stage for name in listed)
