@@ -16,7 +16,7 @@ from motion.transforms import facing, heading
 from webdemo.inference import Engine
 from webdemo.inference.method import WEIGHTS
 
-from .test_planned_scenes import made
+from .planned import made
 
 
 def nearest(motion: np.ndarray, giver: int, joints: list[str], others: list[str]) -> np.ndarray:

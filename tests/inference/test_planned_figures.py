@@ -12,8 +12,8 @@ from motion import SMPL22
 from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.story import Beat
 
+from .planned import FEET, QUICK, WRISTS, heights, made
 from .runs import positions, run
-from .test_planned_scenes import FEET, QUICK, WRISTS, heights, made
 
 HEAD = SMPL22.index("head")
 SHOULDERS = [SMPL22.index("left_shoulder"), SMPL22.index("right_shoulder")]

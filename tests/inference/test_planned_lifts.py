@@ -11,8 +11,8 @@ from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.story import Beat, FloorPath, FloorPoint
 
 from .followed import Follower, speeds
+from .planned import QUICK, made
 from .runs import positions, run
-from .test_planned_scenes import QUICK, made
 
 FEET = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("ankle", "foot")]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -15,19 +13,8 @@ from motion.metrics.quality import mirror_gap
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
 from webdemo.inference.story import Beat
 
+from .planned import FEET, QUICK, WRISTS, heights, made
 from .runs import positions, run
-
-QUICK: dict[str, Any] = {"steps": 3, "seed": 1}
-FEET = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
-WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
-
-
-def made(engine: Engine, prompt: str, **fields: Any) -> np.ndarray:
-    return positions(run(engine, GenerateRequest(prompt=prompt, **{"seconds": 4.0, **QUICK, **fields})))
-
-
-def heights(motion: np.ndarray, person: int) -> np.ndarray:
-    return motion[person, :, 0, 1]
 
 
 def test_who_sits_down_stays_seated_until_they_get_up(engine: Engine) -> None:

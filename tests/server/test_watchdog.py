@@ -12,7 +12,7 @@ import pytest
 from tests.server.attacks.target import Target
 from tests.server.clients import FIELDS, client_of, settings_for, wait_for
 from tests.server.lab import ROOT, stub_module
-from tests.server.queue.test_queue import make, request
+from tests.server.queue.people import make, request
 from webdemo.server.http.health import Health
 from webdemo.server.process import STUCK
 from webdemo.server.store.database import DISK_FULL

@@ -30,6 +30,8 @@ READY = multiprocessing.get_context("forkserver")
 READY.set_forkserver_preload(["tests.server.ready"])
 """Makes processes in which all that a server needs is imported."""
 CANARY = "the canary that nobody may read"
+SECRETS = (CANARY, "root:", "sqlite format 3", "traceback (most recent")
+"""What stands in no answer, in small letters."""
 
 
 class Target:

@@ -14,8 +14,7 @@ import pytest
 
 from .backend import Backend
 from .known import API
-from .target import CANARY, Target
-from .test_known import SECRETS
+from .target import CANARY, SECRETS, Target
 from .values import WRONG, event_data, filled, takes_text, usual
 from .victim import SECRET, UPLOADED, Victim
 

@@ -9,11 +9,10 @@ import pytest
 
 from .backend import Backend
 from .known import API, KNOWN, Attack
-from .target import CANARY, Target
+from .target import CANARY, SECRETS, Target
 from .victim import SECRET, Victim
 
 Victims = Callable[[Target], Victim]
-SECRETS = (CANARY, "root:", "sqlite format 3", "traceback (most recent")
 CASES = [
     pytest.param(attack, fixture, id=f"{place}: {attack.name}")
     for fixture, place in (("closed", "closed"), ("anyone", "open"))

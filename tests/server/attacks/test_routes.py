@@ -9,8 +9,7 @@ from starlette.routing import compile_path
 
 from .backend import Backend
 from .known import KNOWN
-from .target import Target
-from .test_known import SECRETS
+from .target import SECRETS, Target
 from .victim import Victim
 
 OPEN = {
