@@ -8,6 +8,8 @@ is then the second.
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -20,13 +22,16 @@ Way = Literal[
     "to", "away", "past", "around", "behind", "beside", "along", "after", "back", "aside", "ahead", "to and fro"
 ]
 
+_RECORDED = ("bows", "bows deeply", "dances", "shadow-boxes")
+"""Figures that people were recorded in."""
+
 
 class _Named:
-    """One of the names of a file of ``acts/staging``, or of its table, and of ``more``."""
+    """One of the names of a file of ``acts/staging``, or of its ``tables``, and of ``more``."""
 
-    def __init__(self, file: str, *more: str, table: str = "") -> None:
-        names = tomllib.loads((Path(__file__).parent / "staging" / f"{file}.toml").read_text(encoding="utf-8"))
-        self.names = [*(names[table] if table else names), *more]
+    def __init__(self, file: str, *more: str, tables: Sequence[str] = ()) -> None:
+        named = tomllib.loads((Path(__file__).parent / "staging" / f"{file}.toml").read_text(encoding="utf-8"))
+        self.names = [*chain(*([named[table] for table in tables] or [named])), *more]
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return literal_schema(self.names)
@@ -110,13 +115,6 @@ class Posture(_Shape):
     gently: bool = False
 
 
-class Jump(_Shape):
-    """Jumps on the spot, so many where the words give no number."""
-
-    do: Literal["jump"] = "jump"
-    times: Annotated[int, Field(ge=1, le=5)] = 1
-
-
 class Gesture(_Shape):
     """A gesture of the hands, by its name in :data:`acts.staging.gestures.GESTURES`.
 
@@ -189,29 +187,13 @@ class Strike(_Shape):
     goes_on: bool = False
 
 
-class Limb(_Shape):
-    """Legs, trunk or head that move by themselves, as in ``limbs.toml``; the act names side, direction and number.
-
-    Attributes:
-        does: which movement.
-        side: of the leg, where the words name none; trunk and head go to it only where the direction is "out".
-        direction: of leg, trunk or head, where the words name none. A trunk without one leans forward.
-        times: how often, of what is repeated; 0 for as long as the beat lasts.
-    """
-
-    do: Literal["limb"] = "limb"
-    does: Annotated[str, _Named("limbs")]
-    side: Literal["left", "right", "both"] = "right"
-    direction: Literal["", "up", "down", "forward", "back", "out", "left", "right"] = ""
-    times: Annotated[int, Field(ge=0, le=20)] = 0
-
-
 class Figure(_Shape):
-    """A figure of the whole body on the spot, by its name in ``acts/staging/figures.toml``, or one that was recorded.
+    """What a body does on the spot, by its name in ``acts/staging/figures.toml``, or as it was recorded.
 
     Attributes:
-        figure: which one.
+        figure: which one. Of a leg, the trunk or the head, it is the one that fits the act's direction.
         times: how often its middle is done where the words give no number; 0 for as long as there is time.
+        direction: of a leg, the trunk or the head, where the words name none.
         mirrored: left and right are exchanged.
         meets: it is done to the other, who stands within its reach: the two do not move apart for it.
         late, early: seconds after which it begins, of a person who follows the other, and before the end of the beat
@@ -220,8 +202,9 @@ class Figure(_Shape):
     """
 
     do: Literal["figure"] = "figure"
-    figure: Annotated[str, _Named("figures", "bows", "bows deeply", "dances", "shadow-boxes", table="figures")]
+    figure: Annotated[str, _Named("figures", *_RECORDED, tables=("figures", "limbs"))]
     times: Annotated[int, Field(ge=0, le=20)] = 0
+    direction: Literal["", "up", "back", "left", "right"] = ""
     mirrored: bool = False
     meets: bool = False
     late: Annotated[float, Field(ge=0, le=3)] = 0.0
@@ -229,13 +212,7 @@ class Figure(_Shape):
     in_time: bool = False
 
 
-class Words(_Shape):
-    """Nothing is given: the network makes the act from its caption, which it was trained on."""
-
-    do: Literal["words"] = "words"
-
-
 _OnTheFloor = Go | Turn | Stay | Place
-_OfOneself = Posture | Jump | Gesture | Limb | Figure | Words
+_OfOneself = Posture | Gesture | Figure
 _WithTheOther = Touch | Hold | Link | Pull | Lift | Strike
 Shape = Annotated[_OnTheFloor | _OfOneself | _WithTheOther, Field(discriminator="do")]

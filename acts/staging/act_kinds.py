@@ -11,6 +11,7 @@ from acts.plan import Act, other_of
 from acts.reading.vocabulary import vocabulary
 from motion.skeleton import SIDES
 
+from .figures import JUMPS, LIMBS
 from .gestures import GESTURES
 from .holds import COUPLE
 from .score import LOW, Move, Strike, leaving
@@ -25,7 +26,7 @@ _BODILY = frozenset(("body", "ways", "moves", "stage"))
 """Groups of acts of the whole body."""
 _OWN_ARMS = frozenset(("creep-up", "sneak", "sneak-away", "stagger", "skip", "moonwalk", "strut", "stumble", "dive"))
 """Acts of which arms of their own are part."""
-_HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture", "jump"))
+_HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture"))
 """Shapes that need no hands."""
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
 """Shapes that take the other along."""
@@ -112,10 +113,16 @@ def is_manner(entry: Entry) -> bool:
 
 
 def figure_of(act: Act, shape: shapes.Figure) -> shapes.Figure:
-    """The figure of an act: as often and as deep as its words say, with the other leg where they name the left one."""
-    deep = shape.figure == "bows" and any(adverb in ("deeply", "low", "deep") for adverb in act.manner)
-    told = {"times": act.times or shape.times, "mirrored": shape.mirrored ^ (act.side == "left")}
-    return shape.model_copy(update=told | ({"figure": "bows deeply"} if deep else {}))
+    """The figure of an act: as often, as deep, on the side and in the direction that its words say."""
+    if shape.figure == "bows" and any(adverb in ("deeply", "low", "deep") for adverb in act.manner):
+        shape = shape.model_copy(update={"figure": "bows deeply"})
+    side, direction = act.side or "", act.direction or shape.direction
+    aside = direction in (*SIDES, "out")
+    ways = (direction, "aside" if aside or side in SIDES else "", "out" if aside else "")
+    name = next((each for way in ways if (each := f"{shape.figure} {way}") in LIMBS), shape.figure)
+    left = "left" in (direction if name.endswith("aside") and direction in SIDES else side)
+    times = act.times or (0 if act.already and shape.figure == JUMPS else shape.times)
+    return shape.model_copy(update={"figure": name, "times": times, "mirrored": shape.mirrored ^ left, "direction": ""})
 
 
 def strike_of(blows: Blows, done: Done, *, late: bool) -> Strike | None:

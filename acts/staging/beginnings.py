@@ -17,6 +17,7 @@ from motion import FPS, SMPL22
 from motion.skeleton import HEAD_TOP
 from motion.vectors import Array, floor_points
 
+from .figures import has_side
 from .floor import ABREAST, BEHIND, CLOSE, CREEPS, LINKED
 from .holds import TWIRL
 from .lifts import takes_hold
@@ -259,7 +260,7 @@ APART = (0.9, 1.25)
 """Factors of the metres between two who begin without touching."""
 OPEN = 0.3
 """Radians by which somebody who begins may be turned away from the other, to either side."""
-_SIDED = (shapes.Gesture, shapes.Limb, shapes.Touch, shapes.Strike)
+_SIDED = (shapes.Gesture, shapes.Touch, shapes.Strike)
 _SIDES = ("side", "sides", "hands")
 """Names of their fields for it, which may say "both"."""
 _REACHING = frozenset(("hold", "spar", "along", "after", "past", "back to back", "averted", "behind", "thing"))
@@ -303,7 +304,10 @@ class Take:
         stage, update = known.entries[act.act].stage, dict[str, object]()
         left = all(self.left["ab".index(who)] and who not in sided for who in act.agents)
         one_handed = any(
-            isinstance(s, _SIDED) and "both" not in (getattr(s, name, "") for name in _SIDES) for s in stage
+            has_side(s.figure)
+            if isinstance(s, shapes.Figure)
+            else isinstance(s, _SIDED) and "both" not in (getattr(s, name, "") for name in _SIDES)
+            for s in stage
         )
         if left and act.direction is None and one_handed:
             update["side"] = "left"

@@ -71,7 +71,7 @@ def _evened(values: Array) -> Array:
 def _turns(angles: Mapping[str, Array], angle: float) -> Turns:
     """Rotations (N, 3, 3) of the joints against their parents."""
     trunk = about(2, -angles["lean"] / 3) @ about(0, angles["spine"] / 3) @ heading_matrix(angles["twist"] / 3)
-    head = about(0, angles["neck"] / 2) @ heading_matrix(angles["look"] / 2)
+    head = about(2, -angles["tilt"] / 2) @ about(0, angles["neck"] / 2) @ heading_matrix(angles["look"] / 2)
     pelvis = heading_matrix(angle) @ heading_matrix(angles["yaw"])
     turns: Turns = {"pelvis": pelvis @ about(2, -angles["roll"]) @ about(0, angles["pitch"])}
     turns |= dict.fromkeys(("spine1", "spine2", "spine3"), trunk) | dict.fromkeys(("neck", "head"), head)
@@ -79,9 +79,10 @@ def _turns(angles: Mapping[str, Array], angle: float) -> Turns:
         own = {name.removeprefix(f"{side}_"): value for name, value in angles.items() if side in name}
         spread, turned = about(2, sign * own["out"]), heading_matrix(sign * own["turnout"])
         hangs = about(2, -sign * (np.pi / 2 - own["side"]))
-        turns[f"{side}_hip"] = about(0, -own["hip"]) @ spread @ turned
+        turns[f"{side}_hip"] = turned @ about(0, -own["hip"]) @ spread
         turns[f"{side}_knee"] = about(0, own["knee"])
         turns[f"{side}_ankle"] = about(0, own["ankle"])
+        turns[f"{side}_collar"] = about(2, sign * own["shrug"])
         turns[f"{side}_shoulder"] = about(0, -own["arm"]) @ hangs @ about(0, own["rotate"])
         turns[f"{side}_elbow"] = heading_matrix(-sign * own["elbow"])
     return turns

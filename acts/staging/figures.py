@@ -1,17 +1,18 @@
-"""Figures: what a whole body does key by key, such as a push-up, a cartwheel or a kick, and its course over a beat.
+"""Figures: what a body does key by key, such as a push-up, a kick, a raised leg or a nod, and its course over a beat.
 
 No caption of the training data names them. ``figures.toml`` has them as poses, given by the angles of joints, and the
-seconds from one to the next; :mod:`.figure_floor` puts the body on the floor.
+seconds from one to the next; :mod:`.figure_floor` puts the body on the floor. Those of limbs go together,
+and what they do not move is as it is of people who wait.
 """
 
 from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import scipy  # its parts are loaded with their first use
@@ -19,39 +20,48 @@ from numpy.typing import NDArray
 
 from acts.shapes import Figure
 from motion import FPS
+from motion.kinematics import swing
+from motion.skeleton import ARMS, SIDES
 from motion.smoothing import minimum_jerk
-from motion.transforms import heading
+from motion.transforms import heading, heading_matrix
 from motion.vectors import Array
 
 from .figure_floor import grounded_poses
 from .places import Way2D
-from .poses import ALL, HANDS, JOINT, LOWER, Pose, all_but
+from .poses import ALL, HANDS, JOINT, LOWER, TRUNK, Pose, all_but
 from .postures import RISING, posture_joints, postures
-from .recordings import BLENDS, LEGS, has_takes, performing, standing_by
+from .recordings import LEGS, has_takes, performing, standing_by
 from .score import Change, Score
 from .window import OFTEN, SETTLES, Part, Stretch, late_by
 
-SINGLE = ("pitch", "roll", "yaw", "spine", "lean", "twist", "neck", "look")
+SINGLE = ("pitch", "roll", "yaw", "spine", "lean", "twist", "neck", "tilt", "look")
 """Degrees by which the pelvis is pitched forward, rolled to the left and turned to the left, by which the trunk is bent
-forward, leant to the left and twisted to the left, and by which the head is bent and turned likewise."""
+forward, leant to the left and twisted to the left, and by which the head is bent, tilted and turned likewise."""
 METRES = ("rise", "ahead", "aside")
 """Metres of the lowest joint over the floor, and of the body ahead and to the left of where it would be."""
-PAIRED = ("hip", "out", "turnout", "knee", "ankle", "arm", "side", "rotate", "elbow", "free")
-"""Degrees by which a thigh is raised, spread and turned out, a knee bent, toes pointed, an arm raised forward, spread
-and turned in, an elbow bent; "free" is 1 for a leg that does not carry the body, as it swings past
-the floor. A number for both sides, or [left, right]."""
-NAMES = (*SINGLE, *METRES, *(f"{side}_{name}" for side in ("left", "right") for name in PAIRED))
-_ASIDE = tuple(NAMES.index(name) for name in ("roll", "yaw", "lean", "twist", "look", "aside"))
+PAIRED = ("hip", "out", "turnout", "knee", "ankle", "shrug", "arm", "side", "rotate", "elbow", "free")
+"""Degrees by which a thigh is turned out, raised and spread, a knee bent, toes pointed, a shoulder shrugged, an arm
+raised forward, spread and turned in, an elbow bent; "free" is 1 for a leg that does not carry the body, as it swings
+past the floor. A number for both sides, or [left, right]."""
+NAMES = (*SINGLE, *METRES, *(f"{side}_{name}" for side in SIDES for name in PAIRED))
+_ASIDE = tuple(NAMES.index(name) for name in ("roll", "yaw", "lean", "twist", "tilt", "look", "aside"))
 """Those that change their sign in a mirror."""
+_LEFT, _RIGHT = (
+    slice(start, start + len(PAIRED)) for start in (len(NAMES) - 2 * len(PAIRED), len(NAMES) - len(PAIRED))
+)
+_OF_HEAD, _OF_ARMS = frozenset(("neck", "tilt", "look")), frozenset(("arm", "side", "rotate", "elbow"))
 _STANCE = {"hip": 3.4, "out": -1.1, "knee": 6.9, "ankle": -3.4, "side": 9.8, "elbow": 17.2}
 BEGINS, RESTS = 0.3, 0.15
 """Seconds of a beat before a figure begins, and after it."""
 FASTEST, SLOWEST = 0.75, 1.25
 """Shares of their own seconds in which figures are done to fit into a beat."""
+_EASES = 0.5
+"""Seconds in which a person who stands by begins and ends one."""
 _ROUND = 2.0
 """Frames over which the angles are rounded at a pose (the width of a Gaussian)."""
 DOWN = 0.35
 """Height in metres of the pelvis of a person on the ground, who has to get up before a figure."""
+_UPPER = (JOINT["pelvis"], *TRUNK)
 DANCES: Final = "dances"
 """The figure that the network may dance as it likes, if not in time with another."""
 JUMPS: Final = "jumps"
@@ -60,10 +70,15 @@ SHORTEST = 20
 """Frames for which a figure is begun, at least."""
 _SEEN = 6
 """Frames between two poses of a figure that are looked at for the room that it needs."""
+_HOLDS, _WAITS = 0.5, {"in": 0.2}
+"""Seconds for which a limb is held, over and over, and the row of what comes before it and after it."""
+_FILE = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
+LIMBS = frozenset(_FILE["limbs"])
+"""Movements of limbs, trunk or head, which leave the rest of the body as it is."""
+_HELD = frozenset(name for name, rows in _FILE["limbs"].items() if len(rows) == 1)
 
 
-@dataclass(frozen=True, eq=False)
-class Keys:
+class Keys(NamedTuple):
     """A figure as it stands in the file: seconds from the pose before (N,) and angles (N, angles) in radians.
 
     Attributes:
@@ -80,19 +95,22 @@ class Keys:
 @lru_cache(maxsize=1)
 def figures() -> Mapping[str, Keys]:
     """All figures by name."""
-    tables = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
-    poses = {"stand": {}, **tables["poses"]}
-    return {
-        name: Keys(*(_keys(rows.get(part, ()), poses) for part in ("into", "again", "out")))
-        for name, rows in tables["figures"].items()
+    poses = {"stand": {}, **_FILE["poses"]}
+    rows = {
+        name: [parts.get(part, ()) for part in ("into", "again", "out")] for name, parts in _FILE["figures"].items()
     }
+    for name, listed in _FILE["limbs"].items():
+        first, back = listed[0], {"in": listed[0]["in"]}
+        held = [[_WAITS, first], [first | {"in": _HOLDS}], [back, _WAITS]]
+        rows[name] = held if name in _HELD else [[], listed, [back]]
+    return {name: Keys(*(_keys(part, poses) for part in parts)) for name, parts in rows.items()}
 
 
-def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
-    """A person who does a figure through a beat of so many frames.
+def figured(listed: Sequence[Figure], place: Array, angle: float, frames: int) -> Array:
+    """A person who does figures through a beat of so many frames, at the same time.
 
     Args:
-        figure: which.
+        listed: which. Of what several move, the one that moves it the farthest counts, to either side.
         place: (2,) x and z of the pelvis in metres where they stand before.
         angle: heading in radians from +Z towards +X.
         frames: of the beat.
@@ -100,19 +118,36 @@ def figured(figure: Figure, place: Array, angle: float, frames: int) -> Array:
     Returns:
         (frames, 22, 3) metres; the body is on the floor, and what stands on it does not glide.
     """
-    times, rows = _scheduled(figure, frames / FPS)
-    if figure.mirrored:
-        rows = _mirrored(rows)
-    at = np.arange(frames) / FPS
-    between = scipy.interpolate.PchipInterpolator(times, rows, axis=0)
-    course = between(np.clip(at, times[0], times[-1]))
-    course = scipy.ndimage.gaussian_filter1d(course, _ROUND, axis=0, mode="nearest")
+    moved = np.stack([_course(figure, frames) - _STANDS for figure in listed])
+    course = _STANDS + moved.max(axis=0).clip(min=0) + moved.min(axis=0).clip(max=0)
     return grounded_poses(dict(zip(NAMES, course.T, strict=True)), place, angle)
+
+
+def _course(figure: Figure, frames: int) -> Array:
+    """The angles (frames, angles) of a figure through a beat."""
+    times, rows = _scheduled(figure, frames / FPS)
+    between = scipy.interpolate.PchipInterpolator(times, _mirrored(rows) if figure.mirrored else rows, axis=0)
+    course = between(np.clip(np.arange(frames) / FPS, times[0], times[-1]))
+    return np.asarray(scipy.ndimage.gaussian_filter1d(course, _ROUND, axis=0, mode="nearest"))
+
+
+def _moved(listed: Sequence[Figure]) -> set[str]:
+    """The names of what figures move."""
+    rows = np.concatenate([_STANDS, *(rows for figure in listed for _, rows in figures()[figure.figure])])
+    return {name.split("_")[-1] for name, moves in zip(NAMES, np.ptp(rows, axis=0) > 0, strict=True) if moves}
+
+
+def has_side(name: str) -> bool:
+    """True for a movement of limbs that one side does, or first: a raised leg, and no nod."""
+    return name in LIMBS and any((rows[:, _LEFT] != rows[:, _RIGHT]).any() for _, rows in figures()[name])
 
 
 def _scheduled(figure: Figure, length: float) -> tuple[Array, Array]:
     """Seconds (N,) of a beat and the angles (N, angles) at them, beginning and ending with standing."""
     course, times, late = figures()[figure.figure], figure.times, min(figure.late, length / 4)
+    if times and figure.figure in _HELD:  # up and back so many times
+        steps, rows = (np.concatenate(each) for each in zip(*course, strict=True))
+        course = Keys(_keys((), {}), (steps, rows), _keys((), {}))
     room = max(length - late - BEGINS - RESTS, 0.1)
     cycle = float(course.again[0].sum())
     frame = float(course.into[0].sum() + course.out[0].sum())
@@ -157,7 +192,7 @@ def _row(row: Mapping[str, Any], poses: Mapping[str, Any]) -> Array:
         elif name in SINGLE:
             angles[NAMES.index(name)] = np.deg2rad(value)
         else:
-            for side, own in zip(("left", "right"), np.broadcast_to(value, 2), strict=True):
+            for side, own in zip(SIDES, np.broadcast_to(value, 2), strict=True):
                 angles[NAMES.index(f"{side}_{name}")] = own if name == "free" else np.deg2rad(own)
     return angles[None]
 
@@ -167,9 +202,7 @@ _STANDS = _row({}, {"stand": {}})
 
 def _mirrored(rows: Array) -> Array:
     """Angles (N, angles) with left and right exchanged."""
-    count = len(SINGLE) + len(METRES)
-    left, right = rows[:, count : count + len(PAIRED)], rows[:, count + len(PAIRED) :]
-    mirrored = np.concatenate([rows[:, :count], right, left], axis=1)
+    mirrored = np.concatenate([rows[:, : _LEFT.start], rows[:, _RIGHT], rows[:, _LEFT]], axis=1)
     mirrored[:, _ASIDE] *= -1.0
     return mirrored
 
@@ -191,14 +224,19 @@ def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Arra
         rising = _getting_up(scores, person, beat, last)
         for joints, rises, known in posture_joints(rising, beat.window.start, beat.window.stop):
             parts.append(beat.known(person, np.asarray(rises) - beat.start, known, joints))
-    score = scores[beat.window.beat]
+    who, score = "ab"[person], scores[beat.window.beat]
     frames, poses = _figure(score, person, beat, first, seed)
     shown = np.isin(frames, beat.shown(frames))
-    figure, at, poses = score.figures["ab"[person]], frames[shown], poses[shown]
-    busy = has_takes(figure.figure) and (figure.meets or "ab"[person] in score.gestures)
-    body, bows = all_but(HANDS) if busy else ALL, figure.figure.startswith("bows")
+    listed, at, poses = score.bodily(who), frames[shown], poses[shown]
+    figure, taken = listed[0], has_takes(listed[0].figure)
+    moved = set(_OF_HEAD) if taken else _moved(listed)
+    busy = figure.meets or who in score.gestures or score.touch is not None
+    body, bows = all_but(HANDS) if busy and not moved & _OF_ARMS else ALL, figure.figure.startswith("bows")
     if bows:  # the network has the legs
         body = [joint for joint in body if joint == JOINT["pelvis"] or joint not in LEGS]
+    if not taken and moved <= _OF_HEAD:  # the trunk is held, and the limbs are a draft
+        rest = beat.draft(person, at, poses, [joint for joint in body if joint not in _UPPER])
+        return [*parts, beat.known(person, at, poses, _UPPER, kept=True), rest]
     part = beat.known(person, at, poses, LOWER if figure.figure == JUMPS else body, kept=not bows)
     if figure.in_time or figure.figure != DANCES:
         return [*parts, part]
@@ -214,32 +252,54 @@ def figure_poses(score: Score, person: int, beat: Stretch, seed: int) -> list[Po
 
 def _figure(score: Score, person: int, beat: Stretch, first: int, seed: int) -> tuple[NDArray[np.integer], Array]:
     """Frames (N,) of a beat and the poses (N, 22, 3) of a figure that begins with its ``first`` frame, or later."""
-    figure, angle = score.figures["ab"[person]], float(beat.stand.headings[person])
-    together = figure.meets or figure.in_time
+    listed, angle = list(score.bodily("ab"[person])), float(beat.stand.headings[person])
+    together = any(figure.meets or figure.in_time for figure in listed)
     late = 0.0 if together else late_by(seed, person, beat.frames)
     count = beat.frames - first
     if count < SHORTEST:
         return np.zeros(0, dtype=int), np.zeros((0, len(ALL), 3))
-    figure = figure.model_copy(update={"late": figure.late + late})
-    if has_takes(figure.figure):
-        own = seed if figure.in_time else 2 * seed + person
-        poses = performing(figure, beat.halt(person), angle, count, own)
+    listed = [figure.model_copy(update={"late": figure.late + late}) for figure in listed]
+    if has_takes(listed[0].figure):
+        own = seed if together else 2 * seed + person
+        poses = performing(listed[0], beat.halt(person), angle, count, own)
     else:
-        poses = _rested(figured(figure, beat.halt(person), angle, count), figure, first + beat.start, 2 * seed + person)
+        poses = _rested(figured(listed, beat.halt(person), angle, count), listed, first + beat.start, 2 * seed + person)
     frames = np.union1d(np.arange(0, count, OFTEN), [count - 1])
     return frames + first, poses[frames]
 
 
-def _rested(poses: Array, figure: Figure, start: int, seed: int) -> Array:
-    """A figure (T, 22, 3), from a frame of the scene on, of somebody who stands by before it and after it."""
-    seconds = np.arange(len(poses)) / FPS
-    times, _ = _scheduled(figure, len(poses) / FPS)
-    share = minimum_jerk((seconds - times[1] + BEGINS) / BLENDS) * minimum_jerk((times[-1] + BLENDS - seconds) / BLENDS)
-    last = (seconds > times[1:].mean())[:, None]
+def _rested(poses: Array, listed: Sequence[Figure], start: int, seed: int) -> Array:
+    """Figures (T, 22, 3), from a frame of the scene on, of somebody who stands by before them and after them.
+
+    Arms, or all but the head, that they do not move are those of somebody who stands by; who reaches down keeps theirs.
+    """
+    moved = _moved(listed)
+    if listed[0].figure in LIMBS and moved & _OF_ARMS:
+        return poses
+    seconds, frames = np.arange(len(poses)) / FPS, np.arange(len(poses)) + start
+    times = [_scheduled(figure, len(poses) / FPS)[0] for figure in listed]
+    begins, ends = min(each[1] for each in times), max(each[-1] for each in times)
+    share = minimum_jerk((seconds - begins + BEGINS) / _EASES) * minimum_jerk((ends + _EASES - seconds) / _EASES)
+    last = (seconds > (begins + ends) / 2)[:, None]
     places = np.where(last, poses[-1, 0, [0, 2]], poses[0, 0, [0, 2]])
     angles = np.where(last[:, 0], heading(poses[-1:]), heading(poses[:1]))
-    stands = standing_by(places, angles, np.arange(len(poses)) + start, seed)
+    stands = standing_by(places, angles, frames, seed)
+    if moved <= _OF_HEAD:
+        poses = _with_head(stands, poses, angles)
+    elif not moved & _OF_ARMS:
+        for shoulder, *arm in ARMS:
+            poses[:, arm] = poses[:, [shoulder]] + stands[:, arm] - stands[:, [shoulder]]
     return np.asarray(stands + share[:, None, None] * (poses - stands))
+
+
+def _with_head(body: Array, poses: Array, angles: Array) -> Array:
+    """A body (N, 22, 3) that moves its head against its trunk as upright poses (N, 22, 3) of headings (N,) do."""
+    neck, head = JOINT["neck"], JOINT["head"]
+    ways = (poses[:, [neck, head]] - poses[:, [0, neck]]).swapaxes(1, 2)
+    trunk, over = np.moveaxis(heading_matrix(heading(body) - angles) @ ways, -1, 0)
+    moved = body.copy()
+    moved[:, head] = body[:, neck] + np.einsum("nij,nj->ni", swing(trunk, body[:, neck] - body[:, 0]), over)
+    return moved
 
 
 def _getting_up(scores: Sequence[Score], person: int, beat: Stretch, last: Array) -> list[Pose]:

@@ -23,7 +23,6 @@ from .floor import plan
 from .gestures import arms_of, hand_parts
 from .holds import COUPLE, hold_parts, pull_parts, twirl_parts
 from .lifts import Carrying
-from .limbs import limb_parts
 from .moves import coming, meeting, towards_touched
 from .places import AT_TABLE, EVENLY, Standing, Way2D
 from .poses import HANDS, JOINT, TRUNK, UPRIGHT, Pose, all_but, upright
@@ -211,7 +210,7 @@ class _Beat:
     def on_the_spot(self, moves: Sequence[Move], stretch: Stretch) -> tuple[list[Part], dict[int, Array]]:
         """The parts of people who stay where they are, and a pose (22, 3) of those whose hands are still free.
 
-        A figure comes before limbs, these before standing by, and that before a posture. Who stands by has no pose.
+        A figure, or limbs, come before standing by, and that before a posture. Who stands by has no pose.
         """
         score, seed = self.score, self.story.seed
         gone = leaving(moves)
@@ -221,11 +220,8 @@ class _Beat:
             last, up, stays = self.last(person), person not in self.down, who not in gone
             turned = last is None and _keeps_back(score, who)
             stands = upright(stretch.stand.places[person], float(stretch.stand.headings[person]))
-            if stays and who in score.figures:
+            if stays and (who in score.figures or (up and who in score.limbs)):
                 parts += softened(figure_parts(self.story.scores, person, stretch, last, seed))
-                posed[person] = stands
-            elif stays and up and who in score.limbs:
-                parts += limb_parts(person, score, stretch, seed)
                 posed[person] = stands
             elif up and who in score.idle & score.frozen:
                 frames = stretch.every(EVENLY, SETTLES if self.start else 0)

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from motion.skeleton import SIDES
-from motion.vectors import Array, direction, floor_points
+from motion.vectors import Array, direction, floor_points, unit
 
 from .places import EVENLY
-from .poses import JOINT, TRUNK, UPRIGHT, WRISTS, Pose, bending
+from .poses import JOINT, TRUNK, UPRIGHT, WRISTS, Pose, bending, leaning, upright
+from .recordings import sampled
 from .window import OFTEN, REACHES, Frames, KnownFrames, Stretch
 
 
@@ -55,12 +56,11 @@ _NEARLY = 0.2
 _HIPS = [JOINT["left_hip"], JOINT["right_hip"]]
 _HELD = 45
 """Frames before somebody is up in which their hand is held."""
-_ARM = 0.48
-"""Metres from the shoulder to the wrist of an arm that pulls."""
-_NEAR = 1.15
-"""Times the length of both arms between two shoulders at which the hands begin to reach for each other."""
-_LEANS = np.linspace(0.1, 1.2, 12)
-"""Radians by which somebody leans forward who pulls the other up: as little as gets the hands together."""
+_NEAR = 1.1
+"""Metres between two shoulders at which the hands begin to reach for each other."""
+_STRAIGHT, _LEANS = 1.4, 1.2
+"""Height in metres of the other's shoulder to which somebody who pulls them up stands straight, and radians a metre by
+which they lean to a lower one."""
 _GAP = 0.03
 """Metres from where two hands meet to each wrist."""
 _SHOULDERS = {side: JOINT[f"{side}_shoulder"] for side in SIDES}
@@ -155,49 +155,23 @@ def pull_parts(puller: str, poses: Sequence[Pose], stretch: Stretch, *, both: bo
     """
     person = "ab".index(puller)
     hands = [("right", "left"), ("left", "right")] if both else [("right", "right")]
-    down = [frame for frame, pose in poses if pose[0, 1] <= UPRIGHT]
-    up = [frame for frame, pose in poses if pose[0, 1] > UPRIGHT and down and frame > down[-1]]
-    if not up:
-        return []
-    course = stretch.course(person)
-    frames, own, theirs = [], [], []
     known, bodies = np.array([frame for frame, _ in poses]), np.stack([pose for _, pose in poses])
-    for frame in range(max(down[-1] - _HELD, known[0]), up[0] + 1, EVENLY):
-        if not stretch.shows(frame - stretch.start):
-            continue
-        last = int(np.searchsorted(known, frame).clip(1, len(known) - 1))
-        share = (frame - known[last - 1]) / (known[last] - known[last - 1])
-        pose = bodies[last - 1] + share * (bodies[last] - bodies[last - 1])
-        t = frame - stretch.start
-        place, angle = course.places[t], float(course.headings[t])
-        one, other = _leaning_to(pose, place, angle), pose.copy()
-        if _gap(one, other) > _NEAR * 2 * _ARM:
-            continue  # they are still on their way
-        for mine, their in hands:
-            line = one[_SHOULDERS[mine]] - other[_SHOULDERS[their]]
-            meet, gap = other[_SHOULDERS[their]] + line / 2, _GAP * line / np.linalg.norm(line)
-            one[_WRIST[mine]], other[_WRIST[their]] = meet + gap, meet - gap
-        frames.append(t)
-        own.append(one)
-        theirs.append(other)
-    if not frames:
+    down = np.flatnonzero(bodies[:, 0, 1] <= UPRIGHT)
+    if not len(down) or down[-1] + 1 == len(known):
         return []
+    first, last = max(known[down[-1]] - _HELD, known[0]), known[down[-1] + 1]
+    at = stretch.shown(np.arange(first, last + 1, EVENLY) - stretch.start)
+    theirs = sampled(bodies, np.interp(at + stretch.start, known, np.arange(len(known))))
+    course = stretch.course(person)
+    low = _STRAIGHT - theirs[:, _SHOULDERS["right"], 1]
+    own = leaning(upright(course.places[at], course.headings[at]), course.headings[at], (_LEANS * low).clip(0.1, 1.2))
+    apart = np.linalg.norm(own[:, _SHOULDERS["right"]] - theirs[:, _SHOULDERS["right"]], axis=1)
+    for mine, their in hands:
+        line = own[:, _SHOULDERS[mine]] - theirs[:, _SHOULDERS[their]]
+        meet, gap = theirs[:, _SHOULDERS[their]] + line / 2, _GAP * unit(line)
+        own[:, _WRIST[mine]], theirs[:, _WRIST[their]] = meet + gap, meet - gap
+    near = apart < _NEAR  # they are no longer on their way
     return [
-        stretch.known(person, frames, np.stack(own), [*TRUNK, *(_WRIST[mine] for mine, _ in hands)]),
-        stretch.known(1 - person, frames, np.stack(theirs), [_WRIST[their] for _, their in hands]),
+        stretch.known(person, at[near], own[near], [*TRUNK, *(_WRIST[mine] for mine, _ in hands)]),
+        stretch.known(1 - person, at[near], theirs[near], [_WRIST[their] for _, their in hands]),
     ]
-
-
-def _leaning_to(pose: Array, place: Array, angle: float) -> Array:
-    """The pose (22, 3) of a person at a place (2,) who leans forward as far as to reach the hand of another pose."""
-    leaning = bending(place, angle, float(_LEANS[0]))
-    for lean in _LEANS[1:]:
-        if _gap(leaning, pose) <= 2 * _ARM:
-            break
-        leaning = bending(place, angle, float(lean))
-    return leaning
-
-
-def _gap(one: Array, other: Array) -> float:
-    """Metres between the right shoulders of two poses (22, 3)."""
-    return float(np.linalg.norm(one[_SHOULDERS["right"]] - other[_SHOULDERS["right"]]))

@@ -13,7 +13,7 @@ from typing import Literal
 
 from acts import shapes
 from acts.plan import other_of
-from acts.shapes import Figure, Gesture, Limb
+from acts.shapes import Figure, Gesture
 from motion.skeleton import SIDES
 
 Way = Literal[shapes.Way, "turn", "face", "stay", "averted", "back to back", "hold", "spar", "thing"]
@@ -157,8 +157,8 @@ class Score:
         lift: of one by the other.
         strike: blows or throws.
         changes: of posture in order, by person.
-        limbs: legs, trunk and head that move by themselves, by person.
         figures: what whole bodies do on the spot, by person.
+        limbs: movements of legs, trunk and head alone, by person.
         on_feet: those who do what needs legs.
         loose: those who do nothing with their hands: they walk, sit, jump or stand by.
         side: how the two are, and stay, to each other: "beside", "back to back", or "" for neither.
@@ -182,7 +182,7 @@ class Score:
     lift: Lift | None = None
     strike: Strike | None = None
     changes: Mapping[str, tuple[Change, ...]] = field(default_factory=dict)
-    limbs: Mapping[str, tuple[Limb, ...]] = field(default_factory=dict)
+    limbs: Mapping[str, tuple[Figure, ...]] = field(default_factory=dict)
     figures: Mapping[str, Figure] = field(default_factory=dict)
     on_feet: frozenset[str] = frozenset()
     loose: frozenset[str] = frozenset()
@@ -208,6 +208,10 @@ class Score:
         """The people who walk, jump, dance or the like."""
         going = leaving(move for move in self.moves if move.way != "face")
         return going | self.on_feet | set(self.figures)
+
+    def bodily(self, who: str) -> tuple[Figure, ...]:
+        """The figure of a person, or the movements of their limbs."""
+        return (self.figures[who],) if who in self.figures else self.limbs.get(who, ())
 
     @property
     def joined(self) -> bool:

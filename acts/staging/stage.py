@@ -31,7 +31,7 @@ from .act_kinds import (
     strike_of,
     walks,
 )
-from .figures import DANCES, JUMPS
+from .figures import DANCES, LIMBS
 from .gestures import GESTURES
 from .holds import COUPLE
 from .moves import (
@@ -51,8 +51,6 @@ PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
 ON_BENCH = 0.65
 """Metres between two who sit on one bench."""
-_JUMPS = 3
-"""Jumps of a person who is already jumping when the beat begins."""
 _MOST = 5
 """Times that something is done in one beat, at most."""
 _RIGHTWARDS = ("right", "clockwise")
@@ -98,7 +96,7 @@ class _Stage:
         self.moves: list[Move] = []
         self.gestures: dict[str, shapes.Gesture] = {}
         self.changes: dict[str, tuple[Change, ...]] = {}
-        self.limbs: dict[str, tuple[shapes.Limb, ...]] = {}
+        self.limbs: dict[str, tuple[shapes.Figure, ...]] = {}
         self.figures: dict[str, shapes.Figure] = {}
         self.touch: Touch | None = None
         self.lift: Lift | None = None
@@ -194,15 +192,12 @@ class _Stage:
                     self.side, self.apart = self.side or "beside", ON_BENCH
                 for who in people:
                     self.changes[who] = (*self.changes.get(who, ()), *self._changed(act, shape))
-            case shapes.Limb():
-                named = {"side": act.side, "direction": act.direction, "times": act.times}
-                limb = shape.model_copy(update={name: value for name, value in named.items() if value})
-                self.limbs |= {who: (*self.limbs.get(who, ()), limb) for who in people}
             case shapes.Figure():
-                self.figures |= dict.fromkeys(people, figure_of(act, shape))
-            case shapes.Jump():
-                times = act.times or (max(shape.times, _JUMPS) if act.already else shape.times)
-                self.figures |= dict.fromkeys(people, shapes.Figure(figure=JUMPS, times=min(times, _MOST)))
+                figure = figure_of(act, shape)
+                if figure.figure in LIMBS:
+                    self.limbs |= {who: (*self.limbs.get(who, ()), figure) for who in people}
+                else:
+                    self.figures |= dict.fromkeys(people, figure)
             case shapes.Gesture():
                 sides = "both" if GESTURES[shape.gesture].both else act.side or shape.sides
                 self.gestures |= dict.fromkeys(

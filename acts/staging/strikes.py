@@ -23,8 +23,8 @@ from .postures import DUCKING
 from .score import Score, Strike
 from .window import KnownFrames, Stretch
 
-_Given = tuple[int, tuple[str, ...], tuple[tuple[int, ...], Array]]
-"""A person, their hands, and frames with the poses at them."""
+_Given = dict[tuple[int, tuple[str, ...]], tuple[tuple[int, ...], Array]]
+"""Frames with the poses at them, by person and their hands."""
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,6 @@ _CHEEK = np.array([0.11, 0.0, 0.05])
 """Metres from the other's head to the left wrist of a flat hand on the cheek: aside, up, and back to the shoulder."""
 LATE = 0.5
 """Share of a beat after which a blow comes that something else goes on until."""
-WAITS = 18
-"""Frames before somebody makes ready for a single blow: that is when the network has the other answer it."""
 _NEARLY = 0.15
 """Metres from the distance of a blow at which it is struck."""
 RESTS, EVERY = 20, 8
@@ -186,17 +184,17 @@ def strike_parts(struck: Strike, score: Score, stretch: Stretch) -> list[KnownFr
     for blow in listed:
         places = [course.places[blow.frame] for course in courses]
         own, other = places[blow.person], places[1 - blow.person]
-        made: list[_Given] = [(blow.person, (blow.side,), poses(struck.bout, blow.side, own, other))]
-        if struck.bout == "throws":
-            if struck.up:
-                made.append((blow.person, SIDES, catching(own, other, up=True)))
-            else:
-                made.append((1 - blow.person, SIDES, catching(other, own)))
-        after |= {person: blow.frame + beside[-1] for person, _, (beside, _) in made}
-        for person, sides, (beside, known) in made:
-            for frame, pose in zip(beside, known, strict=True):
-                if stretch.shows(blow.frame + frame):
-                    given.setdefault((person, sides), {})[blow.frame + frame] = pose
+        made: _Given = {(blow.person, (blow.side,)): poses(struck.bout, blow.side, own, other)}
+        if struck.up:
+            made[blow.person, SIDES] = catching(own, other, up=True)
+        elif struck.bout == "throws":
+            made[1 - blow.person, SIDES] = catching(other, own)
+        after |= {person: blow.frame + beside[-1] for (person, _), (beside, _) in made.items()}
+        if struck.bout == "slaps" and "ab"[1 - blow.person] not in {*score.gestures, *score.changes, *score.limbs}:
+            after.setdefault(1 - blow.person, blow.frame)  # they would reach for the other's hand
+        for whose, (beside, known) in made.items():
+            at = [(blow.frame + frame, pose) for frame, pose in zip(beside, known, strict=True)]
+            given.setdefault(whose, {}).update((frame, pose) for frame, pose in at if stretch.shows(frame))
     if struck.bout == "throws" and not struck.goes_on and listed:
         catcher = listed[-1].person if struck.up else 1 - listed[-1].person
         own, other = (courses[person].places for person in (catcher, 1 - catcher))
@@ -209,7 +207,8 @@ def strike_parts(struck: Strike, score: Score, stretch: Stretch) -> list[KnownFr
             person, list(known), np.stack(list(known.values())), [*TRUNK, *(JOINT[f"{side}_wrist"] for side in sides)]
         )
         for (person, sides), known in given.items()
-    ] + [*_rests(struck, after, stretch), *_unwarned(struck, score, listed, stretch)]
+        if known
+    ] + _rests(struck, after, stretch)
 
 
 def _rests(struck: Strike, after: Mapping[int, int], stretch: Stretch) -> list[KnownFrames]:
@@ -221,30 +220,10 @@ def _rests(struck: Strike, after: Mapping[int, int], stretch: Stretch) -> list[K
         stretch: the beat.
     """
     parts: list[KnownFrames] = []
-    for person in () if struck.goes_on else {"ab".index(who) for who in struck.turns} & after.keys():
+    for person in () if struck.goes_on else after:
         frames = stretch.shown(np.arange(after[person] + RESTS, stretch.frames, EVERY))
         parts.append(stretch.still(person, frames, [*TRUNK, *HANDS]))
     return parts
-
-
-def _is_single(struck: Strike) -> bool:
-    """True for blows of one person with the hand, who does not go on."""
-    by_hand = struck.bout in ("fists", "slaps")
-    return by_hand and not struck.goes_on and len(set(struck.turns)) == 1
-
-
-def _unwarned(struck: Strike, score: Score, listed: Sequence[Blow], stretch: Stretch) -> list[KnownFrames]:
-    """The arms of a person who is hit, which hang up to the blow: the network raises them to a guard before it.
-
-    Who is slapped keeps them down, and reaches for the other's hand no more.
-    """
-    if not _is_single(struck) or not listed:
-        return []
-    person = 1 - listed[-1].person
-    if "ab"[person] in {*score.gestures, *score.changes, *score.limbs}:
-        return []
-    stop = stretch.frames if struck.bout == "slaps" else listed[-1].frame + 1
-    return [stretch.still(person, stretch.shown(np.arange(RESTS if stretch.start else 0, stop, EVERY)), HANDS)]
 
 
 def _first(struck: Strike, score: Score, courses: Sequence[Course]) -> int:
@@ -253,7 +232,6 @@ def _first(struck: Strike, score: Score, courses: Sequence[Course]) -> int:
     there = np.flatnonzero(np.abs(apart - BOUTS[struck.bout].apart) < _NEARLY)
     near = int(there[0]) if len(there) else 0
     if not struck.answered:
-        near = max(near, WAITS) if _is_single(struck) and frames > 4 * WAITS else near
         return max(near, round(LATE * frames)) if struck.late else near
     change = next(iter(score.changes.get("b" if struck.turns[0] == "a" else "a", ())), None)
     at = round((0.35 if change is None else change.after) * frames)

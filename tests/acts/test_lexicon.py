@@ -67,13 +67,13 @@ def test_a_lab_adds_an_act_with_one_entry(tmp_path: Path) -> None:
     assert "ollie" not in lexicon().entries
 
 
-@pytest.mark.parametrize("shape", ['do = "jump"', 'do = "figure", figure = "bows"'])
+@pytest.mark.parametrize("figure", ["jumps", "bows"])
 def test_an_entry_that_jumps_or_bows_and_gestures_does_both(
-    shape: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    figure: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "own.toml").write_text(
         '[ollie]\nframes = ["{a} ollie"]\ncaption = ["{a} [jump]"]\nreads = ["She ollies."]\n'
-        f'stage = [{{{shape}}}, {{do = "gesture", gesture = "spread"}}]'
+        f'stage = [{{do = "figure", figure = "{figure}"}}, {{do = "gesture", gesture = "spread"}}]'
     )
     monkeypatch.setenv("PASDEDEUX_ACTS", str(tmp_path))
     score = score_of(read("She ollies.").acts)

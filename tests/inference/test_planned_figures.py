@@ -33,7 +33,7 @@ def test_a_person_does_a_handstand_and_the_other_stands_by(engine: Engine) -> No
     found = made(engine, "Person A does a handstand.", seconds=5.0)
     assert (found[0][:, FEET, 1].min(axis=1) > 1.5).sum() > 20
     figure = Figure(figure="handstand", late=late_by(QUICK["seed"], 0, 150))
-    wanted = _rested(figured(figure, np.zeros(2), 0.0, 150), figure, 0, 2 * QUICK["seed"])
+    wanted = _rested(figured([figure], np.zeros(2), 0.0, 150), [figure], 0, 2 * QUICK["seed"])
     wanted += (found[0, 0, FEET] - wanted[0, FEET]).mean(axis=0)
     inverted = wanted[:, FEET, 1].min(axis=1) > 0.3
     assert np.abs(found[0] - wanted)[inverted].max() < 0.03, "no clean-up plants what is given"

@@ -35,7 +35,7 @@ from webdemo.inference.run import Result
 from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.request import SceneRequest
 
-PLACES = frozenset(("go", "turn", "stay", "place", "link", "words"))
+PLACES = frozenset(("go", "turn", "stay", "place", "link"))
 """Shapes that give no poses."""
 SEEDS, WANTED, WORDINGS = 4, 3, 3
 """Seeds of a wording, those of them that have to show the act, and wordings that are tried."""

@@ -50,9 +50,9 @@ def test_two_hands_drum_in_turn_as_often_as_said() -> None:
     assert peaks.sum() == pytest.approx(4, abs=1)
 
 
-@pytest.mark.parametrize("shape", [shapes.Gesture, shapes.Limb, shapes.Figure])
-def test_what_no_file_has_is_no_gesture_limb_or_figure(shape: type[shapes.Gesture]) -> None:
-    (name,) = set(shape.model_fields) & {"gesture", "does", "figure"}
+@pytest.mark.parametrize("shape", [shapes.Gesture, shapes.Figure])
+def test_what_no_file_has_is_no_gesture_or_figure(shape: type[shapes.Gesture]) -> None:
+    (name,) = set(shape.model_fields) & {"gesture", "figure"}
     with pytest.raises(ValidationError, match="Input should be '"):
         shape.model_validate({name: "flies off"})
     assert len(shape.model_json_schema()["properties"][name]["enum"]) > 20, "the schema lists them"
@@ -76,15 +76,4 @@ def test_hands_are_where_the_gesture_has_them(side: str) -> None:
     head = pose[SMPL22.index("head")] - pose[0]
     for hand in ("phone", "ears", "eyes"):
         assert np.linalg.norm(way(hand) - head, axis=1).max() < 0.25, "a hand's length from the head"
-    assert (out * way("prays")[:, 0] < 0.1).all()
     assert (way("points")[:, 2] > 0.4).all()
-    offered = way("offers")
-    assert (offered[:, 2] > 0.3).all() and (offered[:, 1] < shoulder[1] - 0.1).all() and (offered[:, 1] > 0.1).all()
-    assert np.sign(way("linked")[0, 0]) == out
-    drum, ball = way("drums"), way("dribbles")
-    assert np.ptp(drum[:, 1]) > 0.15 and (drum[:, 2] > 0.25).all()
-    assert np.ptp(ball[:, 1]) > 0.15 and (ball[:, 1] < shoulder[1] - 0.2).all()
-    assert np.ptp(way("paints")[:, 1]) > 0.3 and np.ptp(way("conducts")[:, 0]) > 0.2
-    assert np.ptp(way("carries"), axis=0).max() == 0 and (way("lowers")[:, 1] < 0.05).all()
-    assert 0.15 < np.ptp(way("fans")[:, 0]) < 0.25 and (way("fans")[:, 1] < head[1]).all()
-    assert np.ptp(way("waves")[:, 0]) > 0.2 and np.ptp(way("up"), axis=0).max() == 0

@@ -202,7 +202,7 @@ def test_who_lets_hands_be_laid_on_them_keeps_still(text: str) -> None:
 def test_who_tries_to_kiss_somebody_comes_near_and_leans_in() -> None:
     stage = score("A tries to kiss B and B ducks.")
     assert [(move.person, move.way) for move in stage.moves if move.person == "a"] == [("a", "to")]
-    assert [limb.does for limb in stage.limbs["a"]] == ["leans"]
+    assert [limb.figure for limb in stage.limbs["a"]] == ["leans"]
     assert not score("They bow to each other.").moves
 
 

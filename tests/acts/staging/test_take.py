@@ -23,7 +23,8 @@ def test_an_open_hand_is_the_left_one_in_some_takes_and_a_told_one_in_none() -> 
     assert {score.gestures["a"].sides for score in scores("A salutes with the right hand.")} == {"right"}
     for words in ("A raises both arms.", "A plays the drums."):
         assert {score.gestures["a"].sides for score in scores(words)} == {"both"}
-    assert {score.limbs["a"][0].side for score in scores("A lifts the left knee.")} == {"left"}
+    assert {score.limbs["a"][0].mirrored for score in scores("A lifts the left knee.")} == {True}
+    assert {score.limbs["a"][0].mirrored for score in scores("A lifts a knee.")} == {True, False}
 
 
 def test_they_go_round_either_way_unless_it_is_told() -> None:
