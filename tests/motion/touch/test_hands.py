@@ -36,7 +36,7 @@ def test_held_hands_stay_together_and_arms_out_of_each_other() -> None:
     assert np.linalg.norm(pair[0, :, MINE] - pair[1, :, THEIRS], axis=-1).max() > 0.3
     np.testing.assert_allclose(gap, APART, atol=0.01)
     assert max(limb_depth(found[i], found[1 - i]).max() for i in (0, 1)) < DEEP
-    assert (found[0, :, J("left_elbow"), 0] < found[1, :, J("right_elbow"), 0] - 0.09).all()
+    assert (found[0, :, J("left_elbow"), 0] < found[1, :, J("right_elbow"), 0] - 0.2).all()
 
 
 PALM_FRAMES = 60
