@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError, stacked_positions
 from motion.kinematics import forward_kinematics
@@ -37,10 +38,10 @@ def walking(seconds: float, seed: int = 0) -> Duet:
         rotations[:, 0] = heading_matrix(turn)
         swing = np.sin(_STRIDE * times) * (along < reach - 1e-6)
         for side, sign in (("left", 1.0), ("right", -1.0)):
-            rotations[:, SMPL22.index(f"{side}_hip")] = _about_x(-0.45 * sign * swing)
-            rotations[:, SMPL22.index(f"{side}_knee")] = _about_x(0.35 * (1 + sign * swing) / 2)
-            down = _about_z(-sign * 1.25)
-            rotations[:, SMPL22.index(f"{side}_shoulder")] = _about_x(0.4 * sign * swing) @ down
+            rotations[:, SMPL22.index(f"{side}_hip")] = _about("x", -0.45 * sign * swing)
+            rotations[:, SMPL22.index(f"{side}_knee")] = _about("x", 0.35 * (1 + sign * swing) / 2)
+            down = _about("z", -sign * 1.25)
+            rotations[:, SMPL22.index(f"{side}_shoulder")] = _about("x", 0.4 * sign * swing) @ down
         root = np.zeros((len(times), 3))
         root[:, 1] = 0.94
         root[:, 2] = start + (along if turn == 0 else -along)
@@ -78,15 +79,8 @@ def drift(request: PredictRequest) -> PredictResult:
     )
 
 
-def _about_x(angle: Any) -> np.ndarray:
-    cos, sin = np.cos(np.asarray(angle)), np.sin(np.asarray(angle))
-    one, zero = np.ones_like(cos), np.zeros_like(cos)
-    return np.stack([one, zero, zero, zero, cos, -sin, zero, sin, cos], -1).reshape(*cos.shape, 3, 3)
-
-
-def _about_z(angle: float) -> np.ndarray:
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1.0]])
+def _about(axis: str, angle: Any) -> np.ndarray:
+    return Rotation.from_euler(axis, np.asarray(angle)[..., None]).as_matrix()
 
 
 class Mirror:
