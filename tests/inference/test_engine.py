@@ -99,10 +99,8 @@ def test_what_cannot_be_shown_is_said(engine: Engine) -> None:
     ],
 )
 def test_requests_out_of_range_are_refused_with_a_sentence(change: dict, says: str) -> None:
-    with pytest.raises(InputError, match=says) as error:
+    with pytest.raises(InputError, match=rf"\A.*{says}.*\.\Z"):
         replace(REQUEST, **change)
-    assert str(error.value).endswith(".")
-    assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize(

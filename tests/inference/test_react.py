@@ -131,7 +131,7 @@ def spoiled(value: float) -> Clip:
         ({"actor": waver(0.9)}, "0.90 s: give 1 s or more"),
         ({"actor": waver(12.0)}, "12.0 s: trim it to 10 s or less"),
         ({"actor": spoiled(float("nan"))}, "NaN or infinite"),
-        ({"actor": Clip(np.zeros((60, 15, 3)), 30, SKELETONS["sbu15"])}, "joints of sbu15"),
+        ({"actor": Clip(np.zeros((60, 15, 3)), 30, SKELETONS["sbu15"])}, "22 joints, not sbu15's"),
         ({"actor": waver().with_positions(waver().positions * 100)}, "100 times as long"),
         ({"actor": waver().with_positions(waver().positions + 5000)}, "1000 m from the origin"),
         ({"actor": Duet(waver(), waver())}, "one person's clip"),
@@ -140,10 +140,8 @@ def spoiled(value: float) -> Clip:
     ],
 )
 def test_what_cannot_be_done_is_refused_with_a_sentence(change: dict, says: str) -> None:
-    with pytest.raises(InputError, match=says) as error:
+    with pytest.raises(InputError, match=rf"\A.*{says}.*\.\Z"):
         replace(REQUEST, **change)
-    assert str(error.value).endswith(".")
-    assert "\n" not in str(error.value)
 
 
 def test_one_person_is_chosen_and_trimmed() -> None:

@@ -155,9 +155,8 @@ def test_the_given_person_stays_and_the_reaction_differs_by_seed_and_words(engin
     ],
 )
 def test_what_regennet_cannot_do_is_said_in_one_sentence(changed: dict, says: str) -> None:
-    with pytest.raises(InputError, match=says) as error:
+    with pytest.raises(InputError, match=rf"\A.*{says}.*\Z"):
         replace(REQUEST, **changed)
-    assert "\n" not in str(error.value)
 
 
 def test_offline_damping_moves_the_reactor_alone(engine: Engine) -> None:

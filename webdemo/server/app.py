@@ -29,7 +29,7 @@ from webdemo.server.accounts.administration import Administration
 from webdemo.server.accounts.login import login_routes
 from webdemo.server.http.admin_pages import admin_routes
 from webdemo.server.http.guard import Guard, may_read_figures
-from webdemo.server.http.page_html import PageCache, keep_states_lean, kept_in_cache
+from webdemo.server.http.page_html import LeanStates, PageCache
 from webdemo.server.http.payloads import Payloads
 from webdemo.server.http.public_pages import public_routes, study_routes
 from webdemo.server.lab import Lab, engine_of
@@ -94,7 +94,9 @@ def create_app(settings: Settings, *, engine: EngineLike | None = None, scratch:
     )
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
     app.state.lab = lab
-    app.state.tidy = lambda: lab.storage.tidy(kept_in_cache(page))
+    app.state.tidy = lambda: lab.storage.tidy(
+        {str(file) for block in page.blocks.values() for file in getattr(block, "keep_in_cache", ())}
+    )
     _add_routes(app, lab)
     app.include_router(live_routes(lab.streams))
     app.include_router(study_routes(settings, lab.studies))
@@ -121,7 +123,8 @@ def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     gr.mount_gradio_app(app, page, path="/", root_path=settings.root_path or None, **options)
     page.has_launched = True  # a mounted page's is never set, and without it Gradio hands any file out
     (mounted,) = [r.app for r in app.routes if isinstance(r, Mount) and isinstance(r.app, App)]
-    keep_states_lean(mounted, page, lab.bindings)
+    mounted.state_holder = LeanStates(lab.bindings)
+    mounted.state_holder.set_blocks(page)
     keep_files_apart(mounted)
     mend_uploads()
     gradio.utils.SyncToAsyncIterator.aclose = close_in_a_thread  # type: ignore[method-assign]

@@ -81,6 +81,5 @@ WRONG = {
 @pytest.mark.parametrize("case", WRONG)
 def test_wrong_files_are_refused_in_one_sentence(case: str) -> None:
     data, says = WRONG[case]
-    with pytest.raises(InputError, match=says) as error:
+    with pytest.raises(InputError, match=rf"\A.*{says}.*\Z"):
         read(data, name="clip.skeleton")
-    assert "\n" not in str(error.value)

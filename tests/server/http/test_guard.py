@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
+import tracemalloc
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -93,24 +94,30 @@ def test_the_page_is_made_once_for_everybody(local: TestClient) -> None:
     assert "http://localhost:99" in elsewhere and "http://localhost:99" not in local.get("/").text
 
 
-def test_many_who_come_at_once_wait_for_one_page() -> None:
+def test_many_who_come_at_once_wait_for_one_page_and_hold_little_of_it() -> None:
+    """Four hundred of one address who read nothing held the whole page each."""
     made: list[str] = []
 
     async def page(scope: Any, receive: Any, send: Any) -> None:
         made.append(scope["path"])
         await asyncio.sleep(0.05)
         await send({"type": "http.response.start", "status": 200, "headers": []})
-        await send({"type": "http.response.body", "body": b"page"})
+        await send({"type": "http.response.body", "body": page_html._ANY.join([bytes(2**20)] * 2)})
 
     async def come() -> None:
         cache, sent = PageCache(page), []
         scope = {"type": "http", "method": "GET", "path": "/", "scheme": "http", "headers": []}
 
         async def send(message: Any) -> None:
-            sent.append(message)
+            sent.append(message["type"])
+            await asyncio.sleep(60 * ("body" in message))
 
-        await asyncio.gather(*(cache(scope, asyncio.sleep, send) for _ in range(40)))
-        assert sum(message["type"] == "http.response.start" for message in sent) == 40
+        tracemalloc.start()
+        answers = [asyncio.create_task(cache(scope, asyncio.sleep, send)) for _ in range(40)]
+        await asyncio.sleep(0.5)
+        assert sent.count("http.response.start") == len(answers)
+        assert tracemalloc.get_traced_memory()[0] < 20 * 2**20
+        tracemalloc.stop()
 
     asyncio.run(come())
     assert made == ["/"]

@@ -51,6 +51,8 @@ _LIVE_WEIGHT = 0.05
 _DEAR = frozenset(("/", "/config", f"{API}info", f"{API}startup-events"))
 _DEAR_WEIGHT = 10.0
 """The number of GETs that one of these counts as: they are long, or made anew for a name of the server's."""
+_PAGE_WEIGHT = 5.0
+"""The number of requests that a view of a public page counts as: reading a scene of three minutes takes 0.2 s."""
 _BY_A_BAD_FORM = (AttributeError, LookupError, TypeError, ValueError)
 """What Gradio raises over a form that is none."""
 _HOST = re.compile(r"[a-z0-9._\[\]:-]*+")
@@ -125,7 +127,9 @@ class Guard:
         if (
             scope["path"] == "/" or scope["path"].startswith("/study/")
         ) and VISITOR_COOKIE.encode() not in exchange.headers.get(b"cookie", b""):
-            exchange.cookie = self._visitor_cookie(scope)
+            response, secure = Response(), scope["scheme"] == "https"
+            set_cookie(response, VISITOR_COOKIE, new_token(), seconds=YEAR, root=self.settings.root_path, secure=secure)
+            exchange.cookie = response.headers["set-cookie"]
         scope["state"] = {**scope.get("state", {}), "visitor": visitor, "reference": exchange.reference}
         PERSON.set(visitor.person)
         SENDER.set((visitor.account or visitor.person, SENDER.get()[1]))
@@ -234,11 +238,6 @@ class Guard:
             everybody.take(who.address, weight)
         return visitor
 
-    def _visitor_cookie(self, scope: Scope) -> str:
-        response, root, secure = Response(), self.settings.root_path, scope["scheme"] == "https"
-        set_cookie(response, VISITOR_COOKIE, new_token(), seconds=YEAR, root=root, secure=secure)
-        return response.headers["set-cookie"]
-
     # ---- the body --------------------------------------------------------------------------------
 
     def _most(self, path: str) -> float:
@@ -250,8 +249,8 @@ class Guard:
         """The number of requests that this one counts as; each megabyte of an upload adds one. An undeclared length
         counts as the largest allowed."""
         path, declared = scope["path"], declared_length(headers)
-        if path.startswith(LIVE):
-            return _LIVE_WEIGHT
+        if path.startswith(LIVE) or is_public_page(path):
+            return _LIVE_WEIGHT if path.startswith(LIVE) else _PAGE_WEIGHT
         if not is_upload(path) or declared > (most := self._most(path)):
             return 1.0
         return 1.0 + (declared if b"content-length" in headers else most) / 2**20

@@ -126,7 +126,7 @@ class Scratch:
         for made, weight, path in sorted(_files(folder)):
             if freed >= size:
                 break
-            in_use = 0 <= now - made < IN_USE_SECONDS  # the clock may have been set back
+            in_use = 0 <= now - made < IN_USE_SECONDS  # or the clock was set back
             if not in_use and path not in keep and _remove(path):
                 gone, freed = gone + 1, freed + weight
         return gone, freed
