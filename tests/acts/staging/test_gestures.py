@@ -62,7 +62,6 @@ def test_what_no_file_has_is_no_gesture_or_figure(shape: type[shapes.Gesture]) -
 def test_hands_are_where_the_gesture_has_them(side: str) -> None:
     pose = upright(np.zeros(2), 0.0)
     shoulder = pose[SMPL22.index(f"{side}_shoulder")] - pose[0]
-    out = 1 if side == "left" else -1
 
     def way(hand: str) -> np.ndarray:
         return wrist(hand, side, TIME, AHEAD)

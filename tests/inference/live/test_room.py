@@ -15,7 +15,7 @@ from motion.video.following import HIDDEN
 from webdemo.inference.live.agent import BESIDE, LiveAgent
 from webdemo.inference.live.room import BRIGHT, COLD, FRAMES, HOT, LOUD, PLACES, SMELLS, STANDS, Complaint, complaint
 
-from .test_partner import NOTHING, STANDING, Recorded, Scripted
+from .watching import NOTHING, STANDING, Recorded, Scripted
 
 J = SMPL22.index
 LONG = 400

@@ -13,7 +13,7 @@ from tests.server.clients import lab_of, sign_in
 from tests.view.packed import unpack_positions
 from webdemo.server.http.guard import _LIVE_WEIGHT
 
-from .test_streams import poses
+from .streaming import poses
 
 WANTED = {"partner": "agent"}
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import base64
-import json
 import threading
 from dataclasses import replace
 from types import SimpleNamespace
@@ -13,37 +11,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion import SMPL22, InputError
+from motion import InputError
 from motion.things import Thing, shape
 from tests.motion.video.filming import film, packed, stepping
 from tests.server.clients import Clock
-from tests.server.lab import stub_module
+from tests.server.live.streaming import STUB, poses, streams
 from tests.view.packed import unpack_positions
-from webdemo.server.accounts.quotas import Quota
 from webdemo.server.http.routes import Refused
 from webdemo.server.live import stream as stream_module
 from webdemo.server.live import streams as streams_module
 from webdemo.server.live.stream import MOST_BYTES, MOST_FRAMES, MOST_PICTURES, LiveStream, Resampled, read_message
-from webdemo.server.live.streams import StreamEnded, Streams
+from webdemo.server.live.streams import StreamEnded
 from webdemo.ui.visitor import Visitor
 
 ADA, EVE = Visitor("ada", "ada"), Visitor("eve", "eve")
-STUB = stub_module()
-
-
-def streams(most: int = 3, address: int = 2) -> Streams:
-    quota = Quota("live streams", 1, address, most)
-    some: Any = Streams(STUB.StubEngine(), quota)
-    some.clock = Clock()
-    return some
-
-
-def poses(times: list[float], metres: float = 0.0) -> bytes:
-    """A message with a person who stands in the rest pose, higher by so many metres a second."""
-    rest = SMPL22.rest_positions() + np.array([0, 1.0, 0])
-    positions = np.stack([rest + np.array([0, metres * time, 0]) for time in times])
-    data = base64.b64encode(np.rint(1000 * positions).astype("<i2").tobytes()).decode()
-    return json.dumps({"times": times, "poses": data}).encode()
 
 
 def answered(one: LiveStream, message: Any) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from webdemo.server.http.routes import Refused
 from webdemo.server.live.stream import MOST_FRAMES
 from webdemo.ui.visitor import Visitor
 
-from .test_streams import STUB, poses, streams
+from .streaming import STUB, poses, streams
 
 FLOOD = 200
 """Messages that one stream sends at once."""

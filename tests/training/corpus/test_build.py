@@ -77,6 +77,7 @@ def test_a_written_corpus_reads_back(corpus: Path, tmp_path: Path) -> None:
 
 def test_where_no_scene_passes_the_build_goes_on_without(monkeypatch, caplog) -> None:
     monkeypatch.setattr(build, "fault", lambda scene: "broken")
+    monkeypatch.setattr(build, "TRIES", 3)
     rejected = Counter[str]()
     assert build.draw(np.random.default_rng(0), Library(SOURCES, "train"), 400, rejected) == []
     assert rejected["beats: broken"] > 1
