@@ -103,7 +103,7 @@ def test_what_turns_fast_is_not_thrown_around_where_it_joins() -> None:
 
 
 def test_a_dance_that_turns_closes_without_a_jolt_and_only_there() -> None:
-    made = dancer(turn=0.7)
+    made = dancer(3.1, turn=0.7)  # an odd number of frames
     found = closed(made, np.zeros(0, dtype=int))
     around = np.concatenate([found[-REACH - 5 :], found[: REACH + 5]])
     assert jerk(around).max() < 0.025, "metres a frame³, where the hand circles at 13 cm a frame"
