@@ -37,6 +37,7 @@ class Scoring:
     Attributes:
         model: its name.
         steps, guidance, damping: as in :class:`SamplingRequest`.
+        planned: the plan lays out places and poses; else the network has each beat of a sentence to itself.
         plain: sentences are given to the network as they are, neither split nor planned.
         zeros: the network's predictions are zeros, see :func:`silence`.
         strictness: as in :class:`GenerateRequest`.
@@ -46,6 +47,7 @@ class Scoring:
     steps: int
     guidance: float
     damping: float
+    planned: bool = True
     plain: bool = False
     zeros: bool = False
     strictness: float = GenerateRequest.strictness
@@ -54,11 +56,11 @@ class Scoring:
         """The request for both people, or for the partner of an actor."""
         chosen = method(self.model)
         fields: dict[str, Any] = asdict(self) | {"seed": seed}
-        plain, _, strictness = (fields.pop(name) for name in ("plain", "zeros", "strictness"))
+        planned, plain, _, strictness = (fields.pop(name) for name in ("planned", "plain", "zeros", "strictness"))
         if actor is None:
             shortest, longest = chosen.seconds
             seconds = min(max(sentence.seconds, shortest), longest)
-            fields |= {"split": not plain, "planned": not plain, "strictness": strictness}
+            fields |= {"split": not plain, "planned": planned and not plain, "strictness": strictness}
             return GenerateRequest(prompt=sentence.words, seconds=seconds, **fields)
         sampler = SamplingRequest.sampler if "ddim" in chosen.samplers else chosen.samplers[0]
         heard = sentence.words if "words" in chosen.takes else ""
@@ -78,6 +80,7 @@ def add_score(commands: Any) -> None:
     parser.add_argument("--guidance", type=float, help="guidance scale s; the model's own default if not given")
     parser.add_argument("--damping", type=float, default=SamplingRequest.damping)
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these sentences or tags")
+    parser.add_argument("--alone", action="store_true", help="leave each beat to the network: no plan")
     parser.add_argument(
         "--plain", action="store_true", help="give the sentences to the network as they are: no beats, no plan"
     )
@@ -100,6 +103,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         scored.steps if options.steps is None else options.steps,
         scored.defaults.get("guidance", SamplingRequest.guidance) if options.guidance is None else options.guidance,
         options.damping,
+        not options.alone,
         options.plain,
         options.zeros,
         options.strictness,
@@ -129,7 +133,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         f"{scored.label}: {len(sentences)} sentences, {len(ruled)} of them with a rule, seeds 0 to "
         f"{options.seeds - 1}; {scoring.steps} steps, guidance {scoring.guidance:g}, "
         f"damping {scoring.damping:g}, weights {weights}"
-        f"{'; sentences neither split nor planned' if scoring.plain else ''}"
+        f"{'; sentences neither split nor planned' if scoring.plain else '' if scoring.planned else '; no plan'}"
         f"{'; zeros in place of the network' if scoring.zeros else ''}"
         f"{f'; strictness {scoring.strictness:g}' if scoring.strictness else ''}."
     )
