@@ -9,6 +9,7 @@ const PATIENCE = 8000; // ms until the prompt must be on the page
 async function write(sentence) {
   const tabs = [...document.querySelectorAll(".pd-tabs [role=tab]")];
   tabs.find((tab) => tab.textContent.trim() === say("tabs.generate") && tab.ariaSelected !== "true")?.click();
+  if (document.querySelector(".pd-off")) document.querySelector("#way input").click(); // a class was asked for
   const end = performance.now() + PATIENCE;
   let prompt = null;
   while (!prompt?.offsetParent && performance.now() < end) {

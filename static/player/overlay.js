@@ -19,7 +19,7 @@ export function project(point, matrix, width, height, fieldOfView) {
 export function put(element, [x, y, depth], foot = false) {
   element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, ${foot ? -100 : -50}%)`;
   element.style.zIndex = String(1000 - Math.round(10 * Math.min(depth, 99)));
-  element.style.visibility = depth > 0.1 ? "visible" : "hidden";
+  element.style.visibility = depth > 0.1 ? "" : "hidden"; // "visible" would show it where all are hidden
 }
 
 const ROLES = { given: "player.given", generated: "player.generated", "acts first": "player.acts_first", answers: "player.answers" };

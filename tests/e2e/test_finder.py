@@ -26,6 +26,7 @@ def test_an_act_and_a_run_are_found_by_keyboard_and_an_example_by_one_press(
 ) -> None:
     page = live(open_page(server.url, width=1280, height=800))
     expect(page.locator("#finder .pdq-open")).to_be_enabled()
+    page.locator("#way").get_by_text("A class").click()
     page.keyboard.press("Control+k")
     expect(page.locator(FIELD)).to_be_focused()
     until(page, f"document.querySelector('{OFFERED}')?.label.startsWith('Act: ')")

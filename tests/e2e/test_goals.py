@@ -25,7 +25,8 @@ ACTIONS = """() => [...document.querySelectorAll(".pd-actions > *")]
     .map((each) => each.getBoundingClientRect()).filter(({ height }) => height > 0)
     .map(({ top, bottom }) => [top, bottom])"""
 
-BEGAN = """addEventListener("DOMContentLoaded", () => (window.began = document.querySelector(".pdd-early .pdd")))"""
+BEGAN = """addEventListener("DOMContentLoaded", () => (window.began = document.querySelector(".pdd-early .pdd")));
+    (function look() { window.__pasdedeux?.frame > 0 ? (window.moved = Date.now()) : setTimeout(look, 10); })();"""
 
 
 def opened(lab: str, open_page: Callable[..., Page], width: int, height: int) -> tuple[Page, list[float], float]:
@@ -38,10 +39,10 @@ def opened(lab: str, open_page: Callable[..., Page], width: int, height: int) ->
         session.send("Network.enable")
         session.on("Network.loadingFinished", lambda event: sizes.append(event["encodedDataLength"]))
 
-    began = time.perf_counter()
+    began = time.time()
     page = open_page(lab, width=width, height=height, before=listen, color_scheme="light")
-    page.wait_for_function("window.__pasdedeux?.frame > 0", timeout=120_000)
-    return page, sizes, time.perf_counter() - began
+    page.wait_for_function("window.moved", timeout=120_000)
+    return page, sizes, page.evaluate("moved") / 1000 - began  # the answer waits until Gradio's page is built
 
 
 @pytest.mark.parametrize(("width", "height"), [(1440, 900), (390, 844)])

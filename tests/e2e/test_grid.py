@@ -61,6 +61,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
         ["seed 1", "seed 2", "seed 3", "damping 0", "damping 0.4", "damping 0.7"]
     )
     expect(page.locator("#player [data-act=draw]")).to_be_hidden()  # on which of the nine floors?
+    expect(page.locator("#player .pdd-label").first).to_be_hidden()  # whose would it be?
     expect(page.locator("#readouts thead th")).to_have_count(9)
     assert page.locator("#readouts .pd-better").count() > 0 and page.locator("#readouts .pd-worse").count() > 0
     page.evaluate(f"{PLAYER}.act('play')")

@@ -94,11 +94,13 @@ def test_a_motion_plays_first_and_then_that_of_a_sentence(page: Page, server: Si
 
 
 def test_a_class_is_chosen_from_the_list(page: Page, server: SimpleNamespace) -> None:
+    page.fill("#prompt textarea", "They hug.")
     page.locator("#way").get_by_text("A class").click()
     expect(page.locator("#prompt")).to_be_hidden()
     page.click("button#generate")
     assert status(page, "error").startswith("No class is chosen")
     page.locator("#way").get_by_text("A sentence").click()
+    expect(page.locator("#reading .pdr-chip")).to_be_visible()
     expect(page.locator("#status .pd-error")).to_be_hidden()
     page.locator("#way").get_by_text("A class").click()
     page.locator("#class input").click()

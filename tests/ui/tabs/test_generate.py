@@ -47,15 +47,10 @@ def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
     unchosen = run(tab, model="bigraphdiff", class_name=None)[-1]
     assert "No class is chosen" in unchosen["line"] and "record" not in unchosen
     for way, sentence in (("intergen", True), ("bigraphdiff", False)):
-        *shown, guidance, steps, planned, strictness, tries = tab.asked_by(way)
+        words, labels, guidance, steps, *settings = tab.asked_by(way)
         assert steps["value"] == (FAST if sentence else FAITHFUL)
-        assert [update["visible"] for update in (*shown, planned, strictness, tries)] == [
-            sentence,
-            not sentence,
-            sentence,
-            sentence,
-            sentence,
-        ], "a class has no plan, nor acts to try for"
+        assert ("pd-off" in words["elem_classes"], labels["visible"]) == (not sentence, not sentence)
+        assert [update["visible"] for update in settings] == [sentence] * 3, "a class has no plan, nor acts to try for"
         assert guidance["value"] == GenerateRequest(prompt="x").guidance if sentence else guidance["value"] < 4
 
 

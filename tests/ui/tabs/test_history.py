@@ -129,7 +129,7 @@ def test_runs_are_kept_named_removed_and_brought_back() -> None:
     assert "Saved" in press(history, "describe", "hug", **fields).line
     assert ("describe", "hug", fields) in book.done
     gone = press(history, "remove", "hug")
-    assert "Removed one run, with its links" in gone.line and gone.removed == ["hug"]
+    assert "Removed one run, links included" in gone.line and gone.removed == ["hug"]
     assert gone.view["value"]["removed"] == 1
     back = press(history, "restore", removed=("hug",))
     assert "Brought one run back" in back.line and back.removed == []

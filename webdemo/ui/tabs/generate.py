@@ -188,13 +188,14 @@ class GenerateTab(JobTab):
     def asked_by(way: str) -> Updates:
         """Shows the inputs that a method takes, and sets its guidance and steps."""
         chosen, by_class = method(way), takes_class(way)
-        by_sentence = gr.update(visible=not by_class)
+        of_sentences = gr.update(visible=not by_class)
         return (
-            by_sentence,
+            # Were it not visible, Gradio would forget what is read and judged in it.
+            gr.update(elem_classes=["pd-sentence", *["pd-off"] * by_class]),
             gr.update(visible=by_class),
             gr.update(value=chosen.defaults.get("guidance", GenerateRequest.guidance)),
             gr.update(value=chosen.steps),
-            *(by_sentence,) * 3,
+            *(of_sentences,) * 3,
         )
 
     def _of_sentences(self) -> list[Any]:
@@ -225,9 +226,9 @@ class GenerateTab(JobTab):
         """Also what was asked by: a sentence or a class."""
         asked = run.entry.request
         model = asked.get("model", GenerateRequest.model)
-        sentence, label, *_ = self.asked_by(model)
+        sentence, label, *_, setting = self.asked_by(model)
         updates = super().opened(run)
-        updates |= {part: updates.get(part, {}) | sentence for part in self._of_sentences()}
+        updates |= {part: updates.get(part, {}) | setting for part in self._of_sentences()}
         if takes_class(model):
             label = gr.update(value=asked.get("prompt"), visible=True)
         else:

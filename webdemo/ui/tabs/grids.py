@@ -122,7 +122,7 @@ class Grids:
         made: dict[str, Result] = {}
         for i, (name, request) in enumerate(zip(grid.names, wanted, strict=True)):
             made[name] = yield from tab.made(session, request, label=f"{i + 1} of {len(wanted)}, {name}. ")
-        title = f"{tab.title(wanted[0])} · grid of {len(wanted)}"
+        title = f"{tab.title(wanted[0]).rstrip('.')} · grid of {len(wanted)}"
         spent = seconds(sum(map(total, made.values())))
         line = status(f"{len(wanted)} results done in {spent}.", tone="done") + notes_lines(made)
         yield self.shown(grid, made, title, asked) | {"line": line}

@@ -123,9 +123,7 @@ class HistoryTab:
                 line, saved = self.files.export(action.ids)
             elif action.act == "remove":
                 count, removed = self.history.remove(action.ids, owner), action.ids
-                line = status(
-                    f"Removed {counted(count, 'run')}, with {'its' if count == 1 else 'their'} links.", tone="done"
-                )
+                line = status(f"Removed {counted(count, 'run')}, links included.", tone="done")
             elif action.act == "restore":
                 count, removed = self.history.restore(removed, owner), []
                 line = status(f"Brought {counted(count, 'run')} back.", tone="done")
