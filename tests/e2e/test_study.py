@@ -84,7 +84,7 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     voter.context.close()
 
     owner.click("#study-refresh")
-    expect(owner.locator("#study-result")).to_contain_text("one vote of one voter", timeout=SLOW)
+    expect(owner.locator("#study-result")).to_contain_text("One vote of one voter", timeout=SLOW)
     with owner.expect_download(timeout=SLOW) as download:
         owner.click("#study-csv")
     download.value.save_as(tmp_path / "votes.csv")

@@ -29,7 +29,7 @@ from .api import ENDPOINTS
 from .context import PageContext
 from .frames import begin_early
 from .runs import EngineLike
-from .theme import HEAD, style_sheet, theme
+from .theme import HEAD, STYLE, theme
 
 if TYPE_CHECKING:
     from .context import Health, Notebook
@@ -165,7 +165,7 @@ def launch_options() -> dict[str, Any]:
     """Keyword arguments for ``launch`` (or ``gr.mount_gradio_app``) that give the page its looks."""
     return {
         "theme": theme(),
-        "css": style_sheet(),
+        "css": STYLE.read_text(encoding="utf-8"),
         "head": HEAD,
         "footer_links": [],
         "run_history": False,

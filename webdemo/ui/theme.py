@@ -9,6 +9,7 @@ import gradio as gr
 _STATIC = Path(__file__).resolve().parents[2] / "static"
 COLOURS = _STATIC / "colours.css"
 STYLE = _STATIC / "ui.css"
+"""The page's own style sheet, beside what the theme sets and the colours, with which the document begins."""
 
 _SANS = ("system-ui", "-apple-system", "Segoe UI", "Roboto", "Noto Sans", "Helvetica Neue", "Arial", "sans-serif")
 _MONO = ("ui-monospace", "SFMono-Regular", "Menlo", "Consolas", "DejaVu Sans Mono", "monospace")
@@ -116,8 +117,3 @@ def theme() -> gr.themes.Base:
     ).set(
         **_VALUES, **{f"{name}{dark}": f"var(--pd-{own})" for name, own in _COLOURS.items() for dark in ("", "_dark")}
     )
-
-
-def style_sheet() -> str:
-    """The page's own CSS, beside what the theme sets and the colours, with which the document begins."""
-    return STYLE.read_text(encoding="utf-8")

@@ -62,14 +62,11 @@ class SharingPanel:
         """Makes a page of the run that is chosen in the notebook, and shows its address."""
         page = self.history.publish(Action.read(event._data).one, visitor().owner)
         line = f"Published. Anybody with the address can watch until {day(page.until)}."
-        return self._shown(page.key) | {self.fold: gr.update(open=True), self.line: status(line, tone="done")}
+        return {self.fold: gr.update(open=True), self.line: status(line, tone="done")} | self.show(page.key)
 
     @said
     def show(self, key: str | None) -> Parts:
         """A page's address and frame; those of the newest where none is named."""
-        return self._shown(key)
-
-    def _shown(self, key: str | None) -> Parts:
         who = visitor()
         mine = {page.key: page for page in self.history.pages(who.owner)}
         if not mine:
@@ -90,4 +87,4 @@ class SharingPanel:
         """Ends a page."""
         self.history.end_page(key or "", visitor().owner)
         line = status("The page has ended: its address shows nothing any more.", tone="done")
-        return self._shown(None) | {self.line: line}
+        return {self.line: line} | self.show(None)

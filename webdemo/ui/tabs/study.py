@@ -98,14 +98,11 @@ class StudyPanel:
         pairs = paired(*map(_motions, runs))
         study = self.studies.create(who.owner, question or "", names(runs), pairs, address=who.address)
         line = f"The study has {counted(study.pairs, 'pair')}. Send the link to the people who are to vote."
-        return self._shown(study.id) | {self.line: status(line, tone="done"), self.making: gr.update(visible=False)}
+        return {self.line: status(line, tone="done"), self.making: gr.update(visible=False)} | self.show(study.id)
 
     @said
     def show(self, study: str | None) -> Parts:
         """A study's link and result; the newest where none is named."""
-        return self._shown(study)
-
-    def _shown(self, study: str | None) -> Parts:
         who = visitor()
         mine = {each.id: each for each in self.studies.mine(who.owner)}
         if not mine:
@@ -130,7 +127,7 @@ class StudyPanel:
         if not study:
             return {self.line: status()}
         self.studies.delete(study, visitor().owner)
-        return self._shown(None) | {self.line: status("Deleted the study and its votes.", tone="done")}
+        return {self.line: status("Deleted the study and its votes.", tone="done")} | self.show(None)
 
 
 def _motions(run: Opened) -> list[tuple[str, Any]]:
@@ -152,7 +149,7 @@ def names(runs: Sequence[Opened]) -> tuple[str, str]:
 def result_html(study: StudyEntry) -> str:
     """The result: a row a run, with the interval of its share in the votes for either."""
     votes = sum(study.wins) + study.ties
-    line = f"“{study.question}” {counted(study.pairs, 'pair')}. "
+    line = f"“{study.question}” {counted(study.pairs, 'pair').capitalize()}. "
     if not votes:
         return status(f"{line}Nobody has voted yet.")
     rows = [(name, wins, share(wins, sum(study.wins))) for name, wins in zip(study.runs, study.wins, strict=True)]
@@ -161,5 +158,5 @@ def result_html(study: StudyEntry) -> str:
         for name, number, said in [*rows, ("No difference", study.ties, "")]
     )
     shown = table("", ["Votes", "Share (95 % interval)"], body)
-    voted = status(f"{line}{counted(votes, 'vote')} of {counted(study.voters, 'voter')}.")
+    voted = status(f"{line}{counted(votes, 'vote').capitalize()} of {counted(study.voters, 'voter')}.")
     return f'{voted}<div class="pd-readouts">{shown}</div>'
