@@ -79,7 +79,7 @@ def test_a_file_that_cannot_be_read_leaves_nothing_and_a_result_is_taken(page: P
     expect(page.locator("#react-player .pdd-empty")).to_be_visible()
     expect(page.locator("#react-import")).to_be_hidden()
     page.click("button#react-generate")
-    expect(page.locator("#react-status .pd-error")).to_contain_text("There is no actor yet")
+    expect(page.locator("#react-status .pd-error")).to_contain_text("Nobody is given yet")
 
     page.get_by_role("tab", name="Generate").click()
     page.fill("#prompt textarea", "two people walk.")

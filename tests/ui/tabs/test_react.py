@@ -128,7 +128,7 @@ def test_a_bad_file_is_one_sentence_and_leaves_no_actor(
 @pytest.mark.parametrize(
     ("changed", "sentence"),
     [
-        ({"source": None}, "There is no actor yet"),
+        ({"source": None}, "Nobody is given yet"),
         ({"start": 3.9}, "give 1 s or more"),
         ({"start": 3.0, "end": 1.0}, "start &lt; end"),
         ({"prompt": "x" * 501}, "501 characters"),

@@ -182,7 +182,7 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     """
     source: Source | None = fields["source"]
     if source is None:
-        raise InputError("There is no actor yet: drop a motion file, or pick an example or a result.")
+        raise InputError("Nobody is given yet: drop a motion file, or pick an example or a result.")
     own = ("source", "person", "start", "end", "method")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
     chosen = reactor(fields.get("method"), fields)

@@ -73,20 +73,18 @@ def in_time(progress: Drawn | None = None) -> Drawn:
     return hear
 
 
-def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
+def make_film(record: Record, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
     """Films a session's last result as its player shows it.
 
     Args:
-        record: the result, or None where there is none yet.
+        record: the result.
         shown: what :data:`READ_PLAYER` gave; whatever is unknown in it is left at its default.
         folder: where the film is written.
         progress: hears how far it is.
 
     Raises:
-        InputError: where there is nothing to film, or it is too long.
+        InputError: where it is too long.
     """
-    if record is None:
-        raise InputError("There is no motion to film yet: make one first.")
     state = read_player(shown)
     results = record.compared or {"": record.result}
     panes = [_pane(result, state.get("sample"), name if record.compared else "") for name, result in results.items()]
@@ -108,13 +106,11 @@ def make_film(record: Record | None, shown: str, folder: Path, progress: Drawn |
     )
 
 
-def make_figure(record: Record | None, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
+def make_figure(record: Record, shown: str, folder: Path, progress: Drawn | None = None) -> Path:
     """The sample that the player shows as a plotly figure, an .html that plays offline; see :func:`make_film`.
 
     Of compared results it is the first.
     """
-    if record is None:
-        raise InputError("There is no motion to show yet: make one first.")
     state = read_player(shown)
     motion = _pane(record.result, state.get("sample"), "").motion
     path = folder / f"{file_name(record.prompt, record.result.manifest)}.html"

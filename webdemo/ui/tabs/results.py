@@ -194,6 +194,8 @@ class Results:
 
         pool = ThreadPoolExecutor(1)
         try:
+            if record is None:
+                raise InputError("There is no motion yet: make one first.")
             folder = self.page.shelf.folder()
             drawing = pool.submit(DRAWN[key], record, shown, folder, drawn)
             while not drawing.done():
