@@ -11,12 +11,10 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from .playing import choose, stage_pixels, unfold, until
-from .serving import ask, live
+from .serving import SLOW, ask, live
 
 pytestmark = pytest.mark.e2e
 
-SLOW = 120_000
-"""Milliseconds that a busy machine may take to draw."""
 PLAYER = "window.__pasdedeux.player"
 COUNT_CONTEXTS = """
 window.contexts = 0;

@@ -74,6 +74,7 @@ def test_a_study_is_made_of_two_chosen_runs_and_its_link_is_shown(panel: StudyPa
     assert "“Guidance 2.5” against “Guidance 4”" in said[panel.line] and said[panel.fold] == gr.update(open=True)
     said = panel.create(said[panel.chosen], QUESTION)
     assert "The study has 2 pairs" in said[panel.line] and said[panel.link] == "study/key"
+    assert said[panel.which]["choices"] == [("“<i>a</i>” against “b”: Which?", "id")]
     assert "Nobody has voted yet" in said[panel.result] and said[panel.table]["interactive"] is False
     ((question, runs, pairs),) = panel.studies.made  # type: ignore[attr-defined]
     assert (question, runs) == (QUESTION, ("Guidance 2.5", "Guidance 4"))

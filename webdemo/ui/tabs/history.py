@@ -64,7 +64,7 @@ class HistoryTab:
         """
         with gr.Column(elem_classes="pd-panel pd-history", min_width=0):
             self.line = gr.HTML(status(), elem_id="history-status", elem_classes="pd-line")
-            self.address = address_field("result.link", "history-address", visible=False)
+            self.address = address_field("sharing.address", "history-address", visible=False)
             self.saved = gr.DownloadButton(say("history.save"), visible=False, elem_id="history-saved", size="sm")
             self.view = NotebookView(elem_id="history-notebook")
             self.who = gr.HTML(elem_id="history-who")

@@ -77,7 +77,7 @@ class StudyPanel:
     def choose(self, event: gr.EventData) -> Parts:
         """Says what the two runs that are chosen in the notebook are called in a study."""
         ids = Action.read(event._data).ids
-        said = status(" against ".join(f"“{name}”" for name in names(self._runs(ids))))
+        said = status("“{}” against “{}”".format(*names(self._runs(ids))))
         return {
             self.line: said,
             self.fold: gr.update(open=True),
@@ -112,7 +112,7 @@ class StudyPanel:
         if chosen.voters:
             file = str(self.page.shelf.folder() / f"votes-{chosen.id[:8]}.csv")
             self.studies.export(chosen.id, who.owner, Path(file))
-        choices = [(f"{' against '.join(each.runs)}: {each.question}", each.id) for each in mine.values()]
+        choices = [("“{}” against “{}”: {}".format(*each.runs, each.question), each.id) for each in mine.values()]
         return {
             self.reading: gr.update(visible=True),
             self.which: gr.update(choices=choices, value=chosen.id),
