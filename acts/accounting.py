@@ -173,14 +173,14 @@ def shown_caption(act: Act, entry: Entry, said: str = "") -> str:
     usual = next((text for text in entry.caption if act.thing and "{thing}" in text), usual)
     usual = next((text for text in entry.caption if both and "{thing}" not in usual and "{a+b}" in text), usual)
     named = act.patient is not None or bool(_EACH_OTHER.search(said))
-    slots = (_slots(usual), _slots(usual) | {"{b}"} if named else None)
+    slots = (_slots(usual), _slots(usual) | {"{b}"} if named else _slots(usual) - {"{b}"})
     alike = [text for text in entry.caption if own in text and _slots(text) in slots]
     alike = [text for text in alike if act.thing or not text.endswith("something")]
 
     def unlike(text: str) -> tuple[bool | int, ...]:
         words = said_words((text,)) - closed("plain")
         limbs = {vocabulary().named_part(word) for word in words} & closed("limbs")
-        alone = named and "{b}" not in text
+        alone = named == ("{b}" not in text)
         other_part = (act.part or "") not in text or (not act.part and bool(limbs))
         return other_part, alone, len(words - spoken) if said else 0, text != usual
 
@@ -201,7 +201,8 @@ def _slots(caption: str) -> set[str]:
 def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
     """True for a word that says something of what is done, and is none of the people's names."""
     lemma, words = _lemma(token, parsed), vocabulary()
-    if _is_place(token) or _is_target(token) or token.lower_ == "half" or _joined(token, parsed):
+    returns = token.lower_ == "back" and token.dep_ in ("conj", "pobj")  # "to the wall and back", "to the back"
+    if _is_place(token) or _is_target(token) or token.lower_ == "half" or returns or _joined(token, parsed):
         return True
     if token.pos_ not in _CONTENT or not token.text[0].isalnum() or (len(token.text) < 2 and not token.text.isdigit()):
         return False

@@ -25,6 +25,7 @@ from .captions import VERB, by_limb, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import ON_TIPTOE, Act, Plan
 from .qualifiers import body_part, plain, qualifiers
+from .reading.vocabulary import closed
 from .shapes import Lift
 
 ONLY = {"tried": "only tried", "offered": "only offered", "pretended": "only pretended", "wished": "only wished"}
@@ -120,7 +121,7 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
             asked[who] += [rule] if rule else []
             unchecked |= {} if rule else {kind: None}
     casts = [rule for rules in asked.values() for rule in rules]
-    if len(asked) == 2 and not entry.mutual and _AT_ONCE.search(plan.text(act.words)):
+    if len(asked) == 2 and _AT_ONCE.search(plan.text(act.words)) and not (entry.mutual or _is_attitude(entry)):
         casts += [f"together({', '.join(masks(rules[0])[0] for rules in asked.values())}, 1.0)"]
     if act.polarity == "not":
         seen = any(all(check(rule, motion) for rule in rules) for rules in asked.values())
@@ -318,8 +319,10 @@ def _words(act: Act, entry: Entry | None, plan: Plan) -> str:
         text = text.replace(" a hand ", " both hands " if act.side == "both" else f" the {act.side} hand ")
     elif act.side not in (None, act.direction, *text.split()) and "side" in "".join(entry.rule):
         text += by_limb(act, caption)
-    if act.direction in ("left", "right") and act.direction not in text.split():
-        text += f" to the {act.direction}"
+    way = {"back": "backwards"}.get(act.direction or "", act.direction)
+    ways = closed("turns") | ({"forward", "backwards"} if any(s.do in ("go", "jump") for s in entry.stage) else set())
+    if way in ways and not {way, act.direction} & set(text.split()):
+        text += " to the" * (way in ("left", "right")) + f" {way}"
     pace = "slowly" if act.speed < 0.7 else "quickly" * (act.speed > 1.4)
     if pace and pace not in text and set(act.manner) <= {ON_TIPTOE}:
         text += f" {pace}"

@@ -399,5 +399,6 @@ def best(frames: Mapping[str, list[tuple[str, Frame]]], event: Event) -> tuple[s
             handed = event.object is not None and match.thing == event.object.lemma
             if form is event and event.noun is not None and handed:  # "gives a hug" hands nothing over
                 match = replace(match, score=match.score - 5.0)
-            fitting.append((name, frame, match))
-    return max(fitting, key=lambda each: (each[2].score, each[2].own, -len(each[1].elements)), default=None)
+            where = all(ref is not match.part for word, ref in form.prepositions if word == "with")  # and not with what
+            fitting.append(((match.score, where, match.own, -len(frame.elements)), (name, frame, match)))
+    return max(fitting, key=lambda each: each[0])[1] if fitting else None

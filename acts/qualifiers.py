@@ -57,7 +57,7 @@ def qualifiers(
     own = act.direction in named and act.direction in ("up", "down", "out")
     own = own or (act.direction == "away" and re.search(r"\boff\b", said) is not None)  # "takes off his shoes"
     if act.direction is not None and act.direction not in words and "way" not in names and not (own or leaves):
-        yield "which way", _goes_way(act, who) if goes else ""
+        yield "which way", _goes_way(act, who) if goes or any(shape.do == "jump" for shape in entry.stage) else ""
     if abs(act.speed - 1.0) > 0.3:  # who strolls walks
         yield "how fast", _at_speed(act.speed, goes, who, mask) if goes else ""
     if act.distance is not None:

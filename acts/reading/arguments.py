@@ -155,6 +155,7 @@ class Arguments:
                     self._direction(child.lower_, event)
                 if child.lower_ in ("left", "right") and is_act(token.lemma_.lower()) and not self._others(token, who):
                     event.side = event.side or child.lower_  # "a left hook"
+                    event.direction = event.direction or child.lower_ * (token.lemma_ == "turn") or None
             owner = child.lower_ == "of" and self._words.part(token.lemma_.lower())  # "the arms of the other"
             if child.dep_ == "prep" and (owner or child.i in states):
                 continue

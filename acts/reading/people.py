@@ -263,9 +263,6 @@ class Cast:
                     return "ab" if len(subject) == 2 else ""
                 if text == "your" and not self._has("you"):  # of an order: whoever is addressed
                     return "ab" if len(subject) == 2 else subject
-                if text == "whose":
-                    clause = next((t for t in token.ancestors if t.dep_ == "relcl"), None)
-                    return (self.person(clause.head, "") or "") if clause is not None else ""
                 if text in ("my", "your"):
                     return self._named("i" if text == "my" else "you") or ""
                 if child.lower_ == "other" and any(c.lower_ in ("each", "one") for c in child.children):

@@ -308,7 +308,8 @@ class _Planner:
         toes = any(word == "on" and ref.lemma in closed("on tiptoe") for word, ref in event.prepositions)
         toes = toes or (event.lemma in closed("on tiptoe") and not any(shape.gait for shape in goes))
         patient = match.patient
-        upwards = entry.thing == "throws" and event.direction == "up"  # to nobody
+        floored = any(ref.lemma in closed("floors") for word, ref in event.prepositions if word != "from")
+        upwards = entry.thing == "throws" and (event.direction == "up" or floored)  # to nobody
         shared = entry.mutual and event.modality == "offered"
         if (entry.to == "other" or shared) and len(match.agents) == 1 and not upwards:
             patient = patient or other_of(match.agents)
@@ -351,7 +352,7 @@ class _Planner:
             times=None if event.distance and (toes or not name.startswith("step")) else event.times,
             manner=(*([ON_TIPTOE] if goes and toes else ()), *event.adverbs[:7]),
             speed=min(max(speed, 0.2), 3.0),
-            direction=None if answers else event.direction,
+            direction=None if answers else "down" if entry.thing == "throws" and floored else event.direction,
             distance=event.distance,
             words=words,
         )

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from .ellipsis import Ellipsis, stands_absolutely
 from .people import A_NAME, B_NAME
-from .syntax import is_adverb
+from .syntax import adverb_of, is_adverb
 from .vocabulary import closed, vocabulary
 
 if TYPE_CHECKING:
@@ -128,6 +128,8 @@ class _Preparation:
         if going != "ing" or last == i + 1:
             return 0
         said = f"pretend{ending.removeprefix('e')} to {lemma}" if makes else f"as if to {lemma}"
+        within = [word for k in range(i + 1, at) if (word := self._lower(k)) not in closed("determiners")]
+        said += "".join(f" {adverb_of(word)}" for word in within[-1:])  # "a vertical waving motion"
         return self._as_one(said, i, last + 1 - i)
 
     def _stand_at(self, i: int, words: Sequence[str]) -> bool:
@@ -234,8 +236,6 @@ class _Preparation:
             return f"to the {lower}"  # "turn left": no past of "leave"
         if word.islower() and word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
-        if lower == "goodbye" and self._lower(i - 1).startswith(("hug", "kiss", "embrac")):
-            return "fondly"  # the parser takes the two for a compound
         joined = lower.replace("-", "")
         known = self._is_verb(joined) or self._is_deed(joined.removesuffix("s"))
         if joined != lower and known:  # "high-five", "push-ups"

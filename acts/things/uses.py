@@ -144,7 +144,7 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
     if struck or (not kind and (does == "uses" or not act.thing)):  # who hits a ball holds the racket
         name = kind = entry.prop if entry else ""
     if does in ("throws", "kicks"):
-        other = {"up": agents[0], "away": None}.get(act.direction or "", other)
+        other = {"up": agents[0], "away": None, "down": None}.get(act.direction or "", other)
     if not kind or is_fixture(name):
         return None
     if does in ("opens", "closes"):

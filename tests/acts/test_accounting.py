@@ -52,6 +52,7 @@ from webdemo.inference.engine import note
         ("Two kids spin holding hands.", ()),
         ("A walks with B arm in arm.", ("arm in arm",)),
         ("The one on the left bows.", ("The one on the left",)),
+        ("They race each other to the wall and back.", ("to the wall", "back")),
         ("Lucas covers Emma's eyes, she guesses who it is and bows.", ("she guesses who it is",)),
     ],
 )
@@ -87,6 +88,7 @@ def test_words_that_are_in_no_act_are_reported(sentence: str, unread: tuple[str,
         ("She takes off her boots.", ()),
         ("They dance around the room.", ("“around the room”",)),
         ("B drinks with the left hand.", ()),
+        ("A jumps to the left.", ()),
         # what goes without saying of an act
         ("A waves with her right hand.", ()),
         ("A slaps B on the cheek.", ()),
@@ -154,6 +156,7 @@ def test_an_act_that_says_none_of_its_words_is_shown_as_what_they_were_read_as(s
     [
         ("They lean on each other, back to back.", "on each other"),
         ("A crawls under a table.", "under a table"),
+        ("A crouches beneath an object.", "beneath an object"),
         ("A limps past B.", "past B"),
         ("A limps around B.", "around B"),
         ("A edges up to B.", "edges"),

@@ -287,6 +287,10 @@ def test_another_skeleton_is_refused() -> None:
         ("A is sitting.", "A sits"),
         ("A turns away from B.", "A turns away from B"),
         ("A waves.", "A waves"),
+        ("A throws his hat on the floor.", "A throws the hat"),
+        ("A walks around B clockwise.", "A walks around B clockwise"),
+        ("A jumps forward.", "A jumps forward"),
+        ("A takes thirteen steps back.", "A steps back (9.1 m)"),
         ("A waves goodbye to her friend.", "A waves at B"),
         ("Two duelists walk five paces.", "they walk (3.5 m)"),
         ("A pushes B away.", "A pushes B away"),
@@ -300,6 +304,15 @@ def test_a_verdict_names_the_thing_and_the_qualifiers_of_the_words(sentence: str
     """And not the caption's example of one."""
     (found,) = checked(read(sentence), duet())
     assert found.words == words
+
+
+@pytest.mark.parametrize("late", [0, 40])
+def test_what_two_do_together_they_do_at_the_same_time(late: int) -> None:
+    one = DOES["bow"].positions[0]
+    bow = Motion(np.stack([one, np.roll(one * [-1, 1, -1] + [0, 0, 2], late, axis=0)]), 30.0)
+    assert (
+        checked(read("They bow together."), bow)[0].done is not bool(late) and checked(read("They bow."), bow)[0].done
+    )
 
 
 @pytest.mark.parametrize("ahead", [True, False])

@@ -53,11 +53,6 @@ def test_clauses_with_only_a_comma_between_them_follow_each_other(words: str, ki
     assert [relation.kind for relation in read(words).acts[1].order] == [kind]
 
 
-def test_who_then_sits_down_was_not_seated_before() -> None:
-    man, woman = read("The man sits and the woman then sits next to him.").acts[:2]
-    assert man.already and not woman.already
-
-
 @pytest.mark.parametrize(
     ("words", "walk", "kind"),
     [

@@ -163,6 +163,7 @@ def test_a_word_that_was_read_once_is_still_misspelt_the_next_time() -> None:
         ("A man sits down on a chair.", [False]),
         ("They are sitting down.", [False]),
         ("While she kneels, he waves.", [True, False]),
+        ("The man sits and the woman then sits next to him.", [True, False, False]),
         ("A pats B on the knee while both are sitting.", [False, True]),
         ("A waves and then sits while B claps.", [False, False, True]),
         ("He waves while she sits down.", [False, False]),
