@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from acts.staging.poses import kneeling, lying, upright
 from motion import SMPL22
 from motion.kinematics import bone_lengths
+from motion.limbs import solve_two_bones
 from motion.swings import above_floor, lift_swinging_feet
 
 Array = NDArray[np.floating]
@@ -93,6 +94,16 @@ def test_only_an_arm_in_the_floor_is_turned(side: str) -> None:
     np.testing.assert_allclose(bone_lengths(raised), bone_lengths(np.stack([pose] * 5)), atol=1e-9)
     others = [joint for joint in range(22) if joint not in (elbow, wrist)]
     np.testing.assert_array_equal(raised[:, others], np.stack([pose] * 5)[:, others])
+
+
+def test_an_elbow_in_the_floor_is_turned_up_to_the_floor_and_no_farther() -> None:
+    pose = np.stack([lying(HERE, 0.0)] * 3)
+    shoulder, elbow, wrist = (SMPL22.index(f"left_{part}") for part in ("shoulder", "elbow", "wrist"))
+    arm = (pose[:, shoulder], pose[:, elbow], pose[:, wrist])
+    pose[:, elbow], pose[:, wrist] = solve_two_bones(*arm, arm[0] + [0.3, 0.0, 0.0], np.array([0.0, -1.0, 0.0]))
+    raised = above_floor(pose)
+    assert pose[0, elbow, 1] < 0 < raised[0, elbow, 1] < 0.06
+    np.testing.assert_allclose(raised[:, wrist], pose[:, wrist], atol=1e-9)
 
 
 @pytest.mark.parametrize("pose", [upright(HERE, 1.0), kneeling(HERE, 0.0), lying(HERE, 2.0)])
