@@ -67,9 +67,9 @@ def test_readouts_show_what_was_before_and_what_is_better() -> None:
 
 
 def test_notes_of_several_results_stand_once_and_say_whose_they_are() -> None:
-    one, other = (replace(result(), notes=("Both.", *more)) for more in ((), ("Its own.",)))
-    said = re.findall(r">([^<]+)<", notes_lines({"seed 1": one, "seed 2": other}))
-    assert said == ["Both.", "seed 2: Its own."]
+    one, other = (replace(result(), notes=("Both.", *more)) for more in ((), ("After 2.0 s it waves.",)))
+    said = re.findall(r"pd-(note|warning).*?>([^<]+)<", notes_lines({"seed 1": one, "seed 2": other}))
+    assert said == [("warning", "Both."), ("note", "seed 2: After 2.0 s it waves.")]
 
 
 def test_measures_that_could_not_be_determined_are_dashes() -> None:

@@ -16,8 +16,8 @@ Summary = Mapping[str, float]
 
 QUALITY = tuple(measure for measure in MEASURES if measure.better)
 RELATION = tuple(measure for measure in MEASURES if not measure.better)
-_NO_WARNINGS = ("This was made as ", "Read as ")
-"""Beginnings of notes that say how a sentence was understood."""
+_NO_WARNINGS = ("This was made as ", "Read as ", "After ")
+"""Beginnings of notes that say how a sentence or a gesture was understood."""
 _VERDICT = ("Done", "Not understood:", "Not measured:", "Not seen:", "This is the ", "Best of ")
 """Beginnings of the note on the acts, which the reading under the prompt shows at its chips."""
 
