@@ -182,7 +182,10 @@ def shown_caption(act: Act, entry: Entry, said: str = "") -> str:
         limbs = {vocabulary().named_part(word) for word in words} & closed("limbs")
         alone = named == ("{b}" not in text)
         other_part = (act.part or "") not in text or (not act.part and bool(limbs))
-        return other_part, alone, len(words - spoken) if said else 0, text != usual
+        more = {
+            word for word in words - spoken if said and not (act.thing and kind_of(word))
+        }  # which the thing replaces
+        return other_part, alone, len(more), text != usual
 
     alike.sort(key=unlike)
     return next((text for text in alike if act.direction in text.split()), next(iter(alike), usual))

@@ -24,7 +24,7 @@ from .accounting import account, shown_caption
 from .captions import VERB, by_limb, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import ON_TIPTOE, Act, Plan
-from .qualifiers import body_part, plain, qualifiers
+from .qualifiers import body_part, plain, qualifiers, travels
 from .reading.vocabulary import closed
 from .shapes import Lift
 
@@ -303,11 +303,12 @@ def _words(act: Act, entry: Entry | None, plan: Plan) -> str:
     """An act in plain words, with the people as A and B; what is done to nobody in the plan's words names nobody."""
     if entry is None or not entry.caption:
         return act.act.replace("-", " ")
-    if entry.to == "other" and act.id not in account(plan).towards:
+    said = plan.text(act.words)
+    if entry.to == "other" and act.id not in account(plan).towards and not re.search(r"\bback\b", said):
         act = act.model_copy(update={"patient": None})
     if act.distance is not None:
         act = act.model_copy(update={"times": None})
-    caption = shown_caption(act, entry, plan.text(act.words))
+    caption = shown_caption(act, entry, said)
     if act.polarity == "not":
         caption = VERB.sub(r"[do] not \1", caption, count=1)
     if act.already:
@@ -320,7 +321,7 @@ def _words(act: Act, entry: Entry | None, plan: Plan) -> str:
     elif act.side not in (None, act.direction, *text.split()) and "side" in "".join(entry.rule):
         text += by_limb(act, caption)
     way = {"back": "backwards"}.get(act.direction or "", act.direction)
-    ways = closed("turns") | ({"forward", "backwards"} if any(s.do in ("go", "jump") for s in entry.stage) else set())
+    ways = closed("turns") | ({"forward", "backwards"} if travels(entry) else set())
     if way in ways and not {way, act.direction} & set(text.split()):
         text += " to the" * (way in ("left", "right")) + f" {way}"
     pace = "slowly" if act.speed < 0.7 else "quickly" * (act.speed > 1.4)

@@ -15,7 +15,7 @@ from .captions import plural, usual_limb
 from .lexicon import Entry
 from .plan import FROM_BEHIND, ON_TIPTOE, Act
 from .reading.vocabulary import closed, vocabulary
-from .shapes import Gesture, Go, Touch
+from .shapes import Figure, Gesture, Go, Touch
 
 _BOTH = re.compile(r"\bboth (?:\w+ )?(hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE)
 
@@ -57,7 +57,7 @@ def qualifiers(
     own = act.direction in named and act.direction in ("up", "down", "out")
     own = own or (act.direction == "away" and re.search(r"\boff\b", said) is not None)  # "takes off his shoes"
     if act.direction is not None and act.direction not in words and "way" not in names and not (own or leaves):
-        yield "which way", _goes_way(act, who) if goes or any(shape.do == "jump" for shape in entry.stage) else ""
+        yield "which way", _goes_way(act, who) if travels(entry) else ""
     if abs(act.speed - 1.0) > 0.3:  # who strolls walks
         yield "how fast", _at_speed(act.speed, goes, who, mask) if goes else ""
     if act.distance is not None:
@@ -79,6 +79,11 @@ def qualifiers(
     seen = {"part", vocabulary().part(act.part or "")} & names | {act.part, plural(act.part or "")} & words
     if act.part and not (own or seen or "{part}" in caption or "{limb}" in caption):
         yield "where on the body", ""
+
+
+def travels(entry: Entry) -> bool:
+    """True for an act by which somebody gets somewhere: a way over the floor or a jump."""
+    return any(isinstance(s, Go) or (isinstance(s, Figure) and s.figure == "jumps") for s in entry.stage)
 
 
 def plain(act: Act, kinds: frozenset[str]) -> Act:

@@ -37,6 +37,9 @@ class _Named:
         return literal_schema(self.names)
 
 
+_LIMBS = frozenset(_Named("figures", tables=("limbs",)).names)
+
+
 class _Shape(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
     who: Literal["agent", "patient", "both", "first"] = "agent"
@@ -210,6 +213,11 @@ class Figure(_Shape):
     late: Annotated[float, Field(ge=0, le=3)] = 0.0
     early: Annotated[float, Field(ge=0, le=3)] = 0.0
     in_time: bool = False
+
+    @property
+    def of_limb(self) -> bool:
+        """True for a movement of a leg, the trunk or the head, beside which hands are free."""
+        return self.figure in _LIMBS
 
 
 _OnTheFloor = Go | Turn | Stay | Place

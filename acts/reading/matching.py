@@ -14,7 +14,7 @@ from acts.plan import Act, other_of
 
 from . import wordnet
 from .ellipsis import PERFORM
-from .relations import BESIDE
+from .relations import BESIDE, kinds
 from .spelling import deeds
 from .vocabulary import FORMATION, closed, is_act, vocabulary
 
@@ -304,7 +304,7 @@ def seated(event: Event, match: Found, known: Lexicon, told: Iterable[str]) -> E
     seat = next((ref for word, ref in event.prepositions if word in ("in", "on") and ref.lemma in seats), None)
     if seat is None:
         return None
-    shown = {shape.do for shape in known.entries[match[0]].stage}
+    shown = kinds(known.entries[match[0]].stage)
     who, other = event.subject, event.object
     if match[2].patient and other is not None and other.kind == "person" and other.last <= seat.first:
         who = other  # "pushes an old man in a wheelchair"

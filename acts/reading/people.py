@@ -87,8 +87,8 @@ class Cast:
             return self._as("a", text)
         if text in PRONOUN_SEX:
             return self._pronoun(PRONOUN_SEX[text], subject, _meets_other(token))
-        if text in ("i", "me", "myself", "you", "yourself"):
-            return self._named("i" if text in ("i", "me", "myself") else "you")
+        if text in ("i", "me", "my", "myself", "you", "your", "yourself"):
+            return self._named("i" if text in ("i", "me", "my", "myself") else "you")
         if text in closed("they"):
             return self._other(subject) if len(subject) == 1 and text in ("them", "us") else "ab"
         figure = (
@@ -263,8 +263,6 @@ class Cast:
                     return "ab" if len(subject) == 2 else ""
                 if text == "your" and not self._has("you"):  # of an order: whoever is addressed
                     return "ab" if len(subject) == 2 else subject
-                if text in ("my", "your"):
-                    return self._named("i" if text == "my" else "you") or ""
                 if child.lower_ == "other" and any(c.lower_ in ("each", "one") for c in child.children):
                     return "each"
                 who = self.person(child, subject) or ""

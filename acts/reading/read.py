@@ -290,8 +290,6 @@ class _Planner:
     ) -> None:
         if self._reader.cast.alone and (other := self._known.entries[name].alone) in self._known.entries:
             name = other
-        if name == "follow" and event.lemma in vocabulary().verbs["goes"] and self._rests(match.patient):
-            name = "come-behind"  # "B lies down. A walks behind B."
         entry, words = self._known.entries[name], self._span(number)
         if beside is None and (begun := self._includes(entry, match.agents)) is not None:
             words = Span(start=begun.start, stop=words.stop)
@@ -373,11 +371,6 @@ class _Planner:
         self._acts.pop()
         self._of = {number: name for number, name in self._of.items() if name != last.id}
         return last.words
-
-    def _rests(self, who: str | None) -> bool:
-        """True for a person whose last act was to sit, kneel or lie down."""
-        own = [act for act in self._acts if who in act.agents]
-        return bool(own) and any(shape.do == "posture" for shape in self._known.entries[own[-1].act].stage)
 
     def _named(self, event: Event, name: str, text: str) -> str | None:
         """The thing of an act whose frame has its noun as a word, a seat, or the window before which one is done."""

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence, Set
 from acts.frames import Event
 from acts.lexicon import Lexicon, is_fixture
 from acts.plan import Act, Relation
-from acts.shapes import Gesture, Go, Hold, Lift, Place, Shape, Strike
+from acts.shapes import Figure, Gesture, Go, Hold, Lift, Place, Shape, Strike
 
 BESIDE = frozenset(("gesture", "limb", "words"))
 """Shapes of what a person can do on their way."""
@@ -106,6 +106,11 @@ def _joint(number: int, events: Sequence[Event], of: Mapping[int, str]) -> tuple
     return kind, above if above in of else None
 
 
+def kinds(stage: Sequence[Shape]) -> set[str]:
+    """The kinds of some shapes, of which movements of a limb, the trunk or the head are "limb"."""
+    return {"limb" if isinstance(shape, Figure) and shape.of_limb else shape.do for shape in stage}
+
+
 def _goes(act: Act, ways: Set[str], known: Lexicon) -> bool:
     return any(isinstance(shape, Go) and shape.way in ways for shape in known.entries[act.act].stage)
 
@@ -182,7 +187,7 @@ def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
         return "after"  # "A slaps B and B runs away"
     if not _people_of(first) & _people_of(then):
         return "with"
-    tugs = first.patient in then.agents and {s.do for s in known.entries[then.act].stage} <= BESIDE
+    tugs = first.patient in then.agents and kinds(known.entries[then.act].stage) <= BESIDE
     if tugs and _is_hold(first, known):
         return "with"  # "A holds B's wrist, and B tugs"
     if first.agents == then.agents and (_accompanies(first, then, known) or _linked(first, then, known)):
@@ -210,7 +215,7 @@ def _is_hold(act: Act, known: Lexicon) -> bool:
 def _accompanies(first: Act, then: Act, known: Lexicon) -> bool:
     """True for what a person does on their way or beside a gesture: "walks away and waves", "points and laughs"."""
     one, other = known.entries[first.act], known.entries[then.act]
-    shown, later = {shape.do for shape in one.stage}, {shape.do for shape in other.stage}
+    shown, later = kinds(one.stage), kinds(other.stage)
     if not first.happens or not then.happens or other.mutual or not later <= BESIDE:
         return False
     on_way = any(isinstance(shape, Go) and shape.way not in _ARRIVES for shape in one.stage)
@@ -218,6 +223,6 @@ def _accompanies(first: Act, then: Act, known: Lexicon) -> bool:
         return False  # "goes to the window and opens it"
     if on_way and other.thing in ("lifts", "takes", "puts", "opens", "closes"):
         return False  # "walks forward and picks up a cup"
-    jumps = shown == {"jump"} and "gesture" in later
+    jumps = first.act.startswith("jump") and shown == {"figure"} and "gesture" in later
     free = not later & shown and shown <= BESIDE  # whoever points can still laugh with the trunk
     return on_way or jumps or first.already or (free and other.group == "feelings")

@@ -210,26 +210,12 @@ class _Preparation:
         acts = following.endswith("s") and self._is_verb(following)
         return acts or self._lower(i - 1) in closed("towards")
 
-    def _owns(self, i: int, word: str) -> bool:
-        """True for a person, or somebody named elsewhere in the text, who owns the noun behind: "a customers beard"."""
-        word = self._words.shorthand.get(word, word)
-        if self._words.part(self._lower(i + 1)):
-            return (
-                word == "other"
-                or self._words.is_usual_person(word)
-                or any(word == w.lower() for w, _, _ in self._tokens)
-            )
-        article = self._lower(i - 1) in ("a", "an") and i - 1 not in self._letters
-        return article and self._words.is_person(word)
-
     def _worded(self, i: int, word: str) -> str:
         lower, following = word.lower(), self._lower(i + 1)
         if lower in self._words.shorthand:
             return self._words.shorthand[lower]
         if lower == "using" and self._ellipsis.last and self._lower(i - 1) not in closed("going"):
             return "with"  # "kicks using the left leg"
-        if lower.endswith("s") and following.isalpha() and self._owns(i, lower[:-1]):
-            return f"{self._words.shorthand.get(lower[:-1], word[:-1])}'s"  # "her brothers back"
         supplied = self._pieces[-1][0].partition(" ")[0] if self._pieces else ""  # with its object, where it has one
         moved = self._is_verb(self._lower(i - 1)) or self._is_verb(supplied)
         if lower in ("left", "right") and moved and not self._words.part(following):

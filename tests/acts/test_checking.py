@@ -321,6 +321,11 @@ def test_who_salutes_somebody_faces_them(ahead: bool) -> None:
     assert checked(read("Leo salutes Mia."), salutes)[0].done is ahead
 
 
+def test_what_is_thrown_back_is_thrown_to_whom_it_came_from() -> None:
+    verdicts = checked(read("A throws a ball to B, who catches it and throws it back."), duet())
+    assert [each.words for each in verdicts[1:]] == ["B catches the ball", "B throws the ball to A"]
+
+
 def test_who_walks_on_tiptoe_all_along_has_no_flat_stance() -> None:
     def glide(both: np.ndarray) -> None:
         both[0, ..., 2] += np.linspace(0, 2, both.shape[1])[:, None]

@@ -30,7 +30,6 @@ def told(text: str) -> Told:
         ("A shows B how to bow.", [("bow", "a", None)]),
         ("B says hit me.", [("tell", "b", "a")]),
         ("A bows, refusing what B is holding out.", [("bow", "a", None), ("offer-thing", "b", "a")]),
-        ("B lies down. A walks behind B.", [("lie-down", "b", None), ("come-behind", "a", "b")]),
         ("A lifts both arms while leaning left.", [("raise-arm", "a", None), ("lean", "a", None)]),
         ("B holds the ball with the right hand, then both hands.", [("hold-thing", "b", None)]),
     ],

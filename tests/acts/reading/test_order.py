@@ -75,6 +75,7 @@ def test_who_carries_somebody_and_walks_still_carries_them(words: str, walk: str
         ("Two fighters bow, fight for a moment and bow again.", "bow | fight | bow"),
         ("A sits on the chair until B taps A, then A gets up.", "sit-down | pat | stand-up"),
         ("He bows and waves at the same time.", "bow wave"),
+        ("A walks away and nods.", "walk-away nod"),
         ("They clap, then bow at the same time.", "clap | bow"),
         ("high-five, walk", "high-five | walk-together"),
         ("They hug and then part.", "hug | part"),
