@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import torch
 
+from models.diffusion import make_scheduler, top_timesteps
 from models.motion_tokens import FEATURES, encode
 from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, CompactStream
 from models.weights_io import load_network, save_network
@@ -94,6 +95,18 @@ def test_a_reaction_begins_in_the_given_first_pose(engine: Engine, mode: str) ->
 def test_bad_first_poses_are_refused(pose: np.ndarray, model: str, why: str) -> None:
     with pytest.raises(InputError, match=why):
         ReactRequest(actor=waver(2.5), model=model, first_pose=pose)
+
+
+def test_sampling_begins_with_pure_noise(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list = []
+
+    def make(*of: object, **how: object) -> object:
+        made.append(make_scheduler(*of, **how))
+        return made[0]
+
+    monkeypatch.setattr(reactor, "make_scheduler", make)
+    react(engine, mode="offline")
+    assert made[0].timesteps.tolist() == top_timesteps(REQUEST.steps).tolist()
 
 
 def test_offline_sees_the_future(engine: Engine) -> None:
