@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from .limbs import solve_two_bones
 from .skeleton import ARMS, LEGS, SMPL22
-from .smoothing import begun_before, least_jerk
+from .smoothing import begun_before, frames_from, least_jerk, smoothstep
 from .transforms import facing
 from .vectors import FLAT, Array, floor_speed, runs, square_to, unit
 
@@ -131,7 +131,12 @@ _THIN = 0.03
 """The same for elbows, wrists and knees."""
 _REACH = 4
 """Frames over which a body is raised and let down again."""
-_HALVINGS = 12
+_FLIP = 0.8
+"""Change of an elbow's direction from its arm, from frame to frame, at which it goes to the other side."""
+_OVER = 8
+"""Frames before and after in which it goes over the top instead."""
+_LOOSE, _STAYS = 1e-3, 1e6
+"""Weights of its direction against least jerk there, and elsewhere."""
 
 
 def above_floor(positions: Array) -> Array:
@@ -162,24 +167,29 @@ def above_floor(positions: Array) -> Array:
 
 
 def _turned_up(root: Array, middle: Array, end: Array) -> Array:
-    """(T, 3) the middle joint of a limb, turned about the line between its ends until it is above the floor."""
+    """(T, 3) the middle joint of a limb, turned about the line between its ends until it is above the floor.
+
+    One that went to the limb's other side under the floor goes there over its top.
+    """
     low = middle[:, 1] < _THIN
     if not low.any():
         return middle
     axis = unit(end - root)
     out = square_to(middle - root, axis)
-    on_axis = middle - out
-    aside = np.linalg.norm(out, axis=-1, keepdims=True)
-    up = unit(np.array([0.0, 1.0, 0.0]) - axis[:, 1:2] * axis) * aside
-    low_share, high_share = np.zeros((len(root), 1)), np.ones((len(root), 1))
-    for _ in range(_HALVINGS):
-        share = (low_share + high_share) / 2
-        under = _between(out, up, aside, share)[:, 1:2] + on_axis[:, 1:2] < _THIN
-        low_share, high_share = np.where(under, share, low_share), np.where(under, high_share, share)
-    return np.where(low[:, None], on_axis + _between(out, up, aside, high_share), middle)
+    on_axis, aside = middle - out, np.linalg.norm(out, axis=-1)
+    rising = square_to(np.broadcast_to([0.0, 1.0, 0.0], axis.shape), axis)
+    top = unit(rising)
+    side = np.cross(axis, top)
+    rises = (_THIN - on_axis[:, 1]) / np.maximum(aside * top[:, 1], 1e-9)
+    room = np.arccos(np.clip(rises, -1.0, 1.0))
 
+    def above(way: Array) -> Array:
+        angle = np.clip(np.arctan2(np.sum(way * side, axis=-1), np.sum(way * top, axis=-1)), -room, room)[:, None]
+        return np.cos(angle) * top + np.sin(angle) * side
 
-def _between(first: Array, second: Array, length: Array, share: Array) -> Array:
-    """(T, 3) vectors between two others, as long as they are."""
-    mixed = first + share * (second - first)
-    return unit(mixed) * length
+    way = above(out)
+    flips = (np.linalg.norm(np.diff(way, axis=0, prepend=way[:1]), axis=-1) > _FLIP) & (low | np.roll(low, 1))
+    over = smoothstep(1 - frames_from(flips) / (_OVER + 1)) if flips.any() else np.zeros(len(way))
+    if flips.any():
+        way = above(least_jerk(way, np.where(over > 0, _LOOSE, _STAYS)) + 2 * over[:, None] * rising)
+    return np.where((low | (over > 0))[:, None], on_axis + aside[:, None] * way, middle)

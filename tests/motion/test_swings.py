@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from acts.staging.poses import kneeling, lying, upright
 from motion import SMPL22
 from motion.kinematics import bone_lengths
-from motion.limbs import solve_two_bones
+from motion.limbs import bent_towards, solve_two_bones
 from motion.swings import above_floor, lift_swinging_feet
 
 Array = NDArray[np.floating]
@@ -104,6 +104,19 @@ def test_an_elbow_in_the_floor_is_turned_up_to_the_floor_and_no_farther() -> Non
     raised = above_floor(pose)
     assert pose[0, elbow, 1] < 0 < raised[0, elbow, 1] < 0.06
     np.testing.assert_allclose(raised[:, wrist], pose[:, wrist], atol=1e-9)
+
+
+def test_an_elbow_that_went_through_the_floor_goes_over_its_arm() -> None:
+    pose = np.stack([lying(HERE, 0.0)] * 60)
+    shoulder, elbow, wrist = (SMPL22.index(f"left_{part}") for part in ("shoulder", "elbow", "wrist"))
+    arm = (pose[:, shoulder], pose[:, elbow], pose[:, wrist])
+    turns = np.linspace(0.4 * np.pi, 1.6 * np.pi, 60)
+    pole = np.stack([np.zeros(60), np.cos(turns), np.sin(turns)], axis=-1)
+    pose[:, elbow], pose[:, wrist] = bent_towards(*arm, arm[0] + [0.3, 0.0, 0.0], pole)
+    raised = above_floor(pose)
+    assert pose[:, elbow, 1].min() < 0 < raised[:, elbow, 1].min()
+    assert np.linalg.norm(np.diff(raised[:, elbow], axis=0), axis=-1).max() < 0.15
+    assert raised[:, elbow, 1].max() > pose[0, elbow, 1], "over the top"
 
 
 @pytest.mark.parametrize("pose", [upright(HERE, 1.0), kneeling(HERE, 0.0), lying(HERE, 2.0)])
