@@ -12,7 +12,6 @@ from acts.reading.vocabulary import vocabulary
 from motion.skeleton import SIDES
 
 from .figures import JUMPS, LIMBS
-from .gestures import GESTURES
 from .holds import COUPLE
 from .score import LOW, Move, Strike, leaving
 
@@ -190,8 +189,4 @@ def gesturing(gestures: Mapping[str, shapes.Gesture], moves: Sequence[Move], don
     """The people who gesture on the spot and do nothing else."""
     gone = leaving(moves)
     own = {who: sum(who in act.agents and not only_stays(e) for act, e in done) for who in "ab"}
-    return frozenset(
-        who
-        for who, each in gestures.items()
-        if not GESTURES[each.gesture].at_other and own[who] < 2 and who not in gone
-    )
+    return frozenset(who for who in gestures if own[who] < 2 and who not in gone)

@@ -14,7 +14,6 @@ import numpy as np
 from motion import FPS
 from motion.vectors import Array, bearing, direction, travelled, wrapped
 
-from .holds import HOLDS, danced
 from .places import EASE, MOST, TURNING, Standing, Track, Way2D, between, eased, sampled, smoothed
 from .score import Move, Way
 
@@ -291,8 +290,6 @@ def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> No
     turned = 2 * math.pi * move.turns * seconds * eased(time, min(0.5, 1.5 / seconds))
     angles, radii = start + turned, radius + (move.near / 2 - radius) * nearer
     line = middle + radii[:, None] * direction(angles)
-    if move.way == "hold" and move.near == HOLDS["closed"].apart:
-        line = line + danced(time * seconds, angles, np.sign(out @ (standing.places[0] - middle)) or 1.0)
     begins, room = track.frame, len(track.places) - track.frame
     track.follow(line[:room], (angles + math.pi)[:room])
     if move.way == "spar":

@@ -21,11 +21,11 @@ from motion import FPS, SMPL22
 from motion.limbs import solve_two_bones
 from motion.skeleton import SIDES
 from motion.transforms import heading_matrix
-from motion.vectors import Array, floor_points, leftwards, unit
+from motion.vectors import Array, floor_points, unit
 
-from .places import EVENLY, Way2D
+from .places import EVENLY
 from .poses import JOINT, upright
-from .recordings import Performance, performance
+from .recordings import performance
 from .score import Move, Score
 from .window import Frames, KnownFrames, Stretch, late_by
 
@@ -49,7 +49,6 @@ class Stroke:
         both: the gesture is always made by both hands.
         sinks: the hand sinks again before the beat ends; others are held as long as it lasts.
         in_time: two people make it in one time.
-        at_other: it is at the other's body.
         on: "head", "trunk" or "hands": the part of one's own body that the hand is on. The network is held to it
             there, and of somebody on their way to the head as well; other gestures are a draft.
     """
@@ -66,7 +65,6 @@ class Stroke:
     both: bool = False
     sinks: bool = False
     in_time: bool = False
-    at_other: bool = False
     on: str = ""
 
     def way(self, out: float, seconds: Array) -> Array:
@@ -89,10 +87,8 @@ GESTURES: Mapping[str, Stroke] = {
     for name, way in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")).items()
 }
 """The gestures by their names in the lexicon."""
-_TOWARDS = {"points": 0.47, "around": 0.4}
-"""Metres by which the wrist is nearer to the other: that of an arm that is nearly straight, or around their back."""
-_PENDULUM, _SWUNG = 0.44, 0.9
-"""Metres from the shoulder to the wrist of an arm that swings, and radians by which it swings to either side."""
+_POINTS = 0.47
+"""Metres by which the wrist of somebody who points is nearer to the other: that of an arm that is nearly straight."""
 
 
 def hands_of(gesture: Gesture) -> tuple[str, ...]:
@@ -118,10 +114,7 @@ def wrist(name: str, side: str, seconds: Array, towards: Array) -> Array:
         (N, 3) metres from the pelvis.
     """
     stroke = GESTURES[name]
-    way = stroke.way(1.0 if side == "left" else -1.0, seconds) + _TOWARDS.get(name, 0.0) * towards
-    if name == "swings":
-        angle = _SWUNG * np.sin(2 * np.pi * stroke.rate * np.asarray(seconds))
-        way += _PENDULUM * np.stack([0.0 * angle, -np.cos(angle), np.sin(angle)], axis=1)
+    way = stroke.way(1.0 if side == "left" else -1.0, seconds) + (_POINTS if name == "points" else 0.0) * towards
     return way + (_shoulder(side) if stroke.from_shoulder else 0.0)
 
 
@@ -200,12 +193,7 @@ def hand_parts(
         stretch: the beat.
         seed: draws how late each of them is.
     """
-    gestures = dict(score.gestures)
-    if _linked(moves):
-        around = {who for who, gesture in gestures.items() if gesture.gesture == "around"}
-        for who, side in _inner(stretch.ways).items():
-            if who in around or not around:
-                gestures[who] = Gesture.model_validate({"gesture": "around" if around else "linked", "sides": side})
+    gestures = score.gestures
     ways = {("ab".index(move.person), move.way) for move in moves}
     for person in (0, 1):
         gesture = gestures.get("ab"[person])
@@ -219,21 +207,20 @@ def hand_parts(
             continue
         if (recorded := performance(gestures, person, stretch.frames, seed)) is not None:
             at = at[recorded.share(at / FPS) > 0]
-            joints, places = _recorded_arms(gesture, person, at, stretch, recorded)
+            poses, joints = recorded.poses(at / FPS), arms_of(gesture)
+            places: Array = poses[:, joints] - poses[:, :1]
         else:
             joints, at, places = _arms(gesture, person, at, stretch, seed)
         shown = np.isin(at, stretch.shown(at))
-        part = _known(person, joints, at[shown], places[shown], stretch)
+        arms = np.zeros((int(shown.sum()), len(JOINT), 3))
+        turns = heading_matrix(stretch.course(person).headings[at[shown]])
+        arms[:, joints] = np.einsum("nij,nsj->nsi", turns, places[shown])
+        part = stretch.known(person, at[shown], arms, joints)
         yield replace(part, soft=not GESTURES[gesture.gesture].on)
 
 
-def _linked(moves: Sequence[Move]) -> bool:
-    """True for two who walk side by side and hold each other."""
-    return {move.way for move in moves if move.linked} == {"along"}
-
-
 def _arms(gesture: Gesture, person: int, at: Frames, stretch: Stretch, seed: int) -> tuple[list[int], Frames, Array]:
-    """Joints of a person's arms, frames while they are up, and their places (N, joints, 3) beside the pelvis.
+    """Joints of a person's arms, frames while they are up, and their places (N, joints, 3) from the pelvis, facing +Z.
 
     Args:
         gesture: the gesture.
@@ -245,57 +232,23 @@ def _arms(gesture: Gesture, person: int, at: Frames, stretch: Stretch, seed: int
     late = 0.0 if GESTURES[gesture.gesture].in_time else late_by(seed, person, stretch.frames)
     start = max(int(at[0]) - FIRST, 0)
     length = (stretch.frames - start) / FPS - late
-    if not GESTURES[gesture.gesture].at_other:
-        begins, sinks, _ = _lasts(gesture, length)
-        since = (at - start) / FPS - late
-        at = at[(since >= begins) & (since <= sinks)]
-    seconds = (at - start) / FPS - late
+    begins, sinks, _ = _lasts(gesture, length)
+    since = (at - start) / FPS - late
+    up = (since >= begins) & (since <= sinks)
+    at, seconds = at[up], since[up]
     own, other = stretch.course(person), stretch.course(1 - person)
     turns = heading_matrix(own.headings[at])
-    line = floor_points(other.places[at] - own.places[at])
-    line /= np.linalg.norm(line, axis=1, keepdims=True).clip(min=1e-6)
-    towards = np.einsum("nji,nj->ni", turns, line)
-    if GESTURES[gesture.gesture].at_other:
-        joints = [JOINT[f"{side}_wrist"] for side in hands_of(gesture)]
-        places = [wrist(gesture.gesture, side, at / FPS, towards)[:, None] for side in hands_of(gesture)]
-    else:
-        joints = arms_of(gesture)
-        places = [arm(gesture, side, seconds, length, towards) for side in hands_of(gesture)]
+    towards = np.einsum("nji,nj->ni", turns, unit(floor_points(other.places[at] - own.places[at])))
+    joints = arms_of(gesture)
+    places = [arm(gesture, side, seconds, length, towards) for side in hands_of(gesture)]
     if GESTURES[gesture.gesture].on == "head" and person in stretch.ways:
         stands, head = upright(np.zeros(2), 0.0), JOINT["head"]
         joints.append(head)
         places.append(np.tile(stands[head] - stands[0], (len(at), 1, 1)))
-    return joints, at, np.einsum("nij,nsj->nsi", turns, np.concatenate(places, axis=1))
-
-
-def _recorded_arms(
-    gesture: Gesture, person: int, at: Frames, stretch: Stretch, recorded: Performance
-) -> tuple[list[int], Array]:
-    """The joints of the arms of a recorded gesture; see :func:`_arms`."""
-    poses = recorded.poses(at / FPS)
-    joints = arms_of(gesture)
-    turns = heading_matrix(stretch.course(person).headings[at])
-    return joints, np.einsum("nij,nsj->nsi", turns, poses[:, joints] - poses[:, :1])
+    return joints, at, np.concatenate(places, axis=1)
 
 
 def _there(places: Array, frames: Frames) -> Frames:
     """Those of some frames at which a person has come to where they stay; the last one, if they are never there."""
     short = np.linalg.norm(places[frames] - places[-1], axis=1)
     return frames[short < ARRIVED] if (short < ARRIVED).any() else frames[-1:]
-
-
-def _known(person: int, joints: Sequence[int], frames: Frames, places: Array, stretch: Stretch) -> KnownFrames:
-    """Joints (N, joints, 3) of a person at some frames of a beat."""
-    poses = np.zeros((len(frames), len(JOINT), 3))
-    poses[:, list(joints)] = places
-    return stretch.known(person, frames, poses, joints)
-
-
-def _inner(ways: Mapping[int, Way2D]) -> dict[str, str]:
-    """The hand of each of two people side by side that is next to the other."""
-    if len(ways) < 2 or any(way.headings is None for way in ways.values()):
-        return {}
-    line = ways[1].places[-1] - ways[0].places[-1]
-    angle = float(np.nan_to_num(np.asarray(ways[0].headings)[-1]))
-    left = line @ leftwards(angle) > 0
-    return {"a": "left", "b": "right"} if left else {"a": "right", "b": "left"}

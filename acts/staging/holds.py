@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from motion.skeleton import SIDES
-from motion.vectors import Array, direction, floor_points, unit
+from motion.vectors import Array, floor_points, unit
 
 from .places import EVENLY
 from .poses import JOINT, TRUNK, UPRIGHT, WRISTS, Pose, bending, leaning, upright
@@ -47,10 +47,6 @@ TWIRL = 0.42
 """Metres between the pelvises of two people while one turns under the other's arm."""
 _OVER = 1.88
 """Height in metres of the hands over the person who turns under them."""
-_BASIC, _BAR = 0.16, 2.0
-"""Metres and seconds of a couple's basic step to and fro."""
-_TOGETHER, _GROWS = 0.8, 0.6
-"""Seconds in which the two come together before it, and in which it grows to its length."""
 _NEARLY = 0.2
 """Metres more than in a hold at which two who begin in it stand."""
 _HIPS = [JOINT["left_hip"], JOINT["right_hip"]]
@@ -98,19 +94,6 @@ def joined(hold: str, places: Array) -> Array:
             [a - 0.17 * left + 1.46 * up + 0.1 * ahead, hands + 0.03 * ahead],  # b's left on a's shoulder
         ]
     )
-
-
-def danced(seconds: Array, angles: Array, sign: float) -> Array:
-    """(N, 2) metres by which a couple in hold steps to and fro, along the line between them, as they turn.
-
-    Args:
-        seconds: (N,) since the beat began.
-        angles: (N,) radians of one of them about the middle.
-        sign: 1 for a and -1 for b, who go the same way.
-    """
-    ahead = sign * direction(angles)
-    since = np.clip(seconds - _TOGETHER, 0, None)[:, None]
-    return np.clip(since / _GROWS, 0, 1) * _BASIC * np.sin(2 * np.pi * since / _BAR) * ahead
 
 
 def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:

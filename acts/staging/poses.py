@@ -11,7 +11,7 @@ from motion import SMPL22
 from motion.kinematics import forward_kinematics
 from motion.limbs import bent_towards
 from motion.skeleton import TOES
-from motion.transforms import heading, heading_matrix
+from motion.transforms import heading_matrix
 from motion.vectors import FLAT, Array, direction, floor_points, rotations_by
 
 Turns = dict[str, Array]
@@ -133,22 +133,14 @@ def kneeling(place: Array, angle: float) -> Array:
 
 
 def lying(place: Array, angle: float) -> Array:
-    """A person lying on the back, the feet about where they stood: (22, 3) metres."""
+    """A person lying on the back, the feet about where they stood and a hand on the belly: (22, 3) metres."""
     pose = _pose_of(0.0, _LIES)
     pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -np.pi / 2)).T
     pose[:, 1] += 0.08 - pose[:, 1].min()
+    shoulder, elbow, wrist = (JOINT[f"right_{joint}"] for joint in ("shoulder", "elbow", "wrist"))
+    goal, pole = (np.asarray(way) @ heading_matrix(angle).T for way in (_BELLY, _ELBOW_LIES))
+    pose[elbow], pose[wrist] = bent_towards(pose[shoulder], pose[elbow], pose[wrist], pose[0] + goal, pole)
     return pose + ahead_of(place, angle, -LYING)
-
-
-def at_rest(poses: Array) -> Array:
-    """Poses (N, 22, 3) of a person lying on the back, with the right hand on the belly."""
-    rested = np.array(poses)
-    arm = [JOINT[f"right_{joint}"] for joint in ("shoulder", "elbow", "wrist")]
-    turns = np.swapaxes(heading_matrix(heading(rested)), -1, -2)
-    goal, pole = (np.asarray(way) @ turns for way in (_BELLY, _ELBOW_LIES))
-    shoulder, elbow, wrist = (rested[:, joint] for joint in arm)
-    rested[:, arm[1]], rested[:, arm[2]] = bent_towards(shoulder, elbow, wrist, rested[:, 0] + goal, pole)
-    return rested
 
 
 def _reclining(place: Array, angle: float, share: float) -> Array:

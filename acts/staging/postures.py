@@ -20,6 +20,7 @@ from motion.vectors import Array, direction
 
 from .places import EVENLY, HALT, Standing
 from .poses import (
+    ALL,
     HANDS,
     JOINT,
     LOWER,
@@ -28,7 +29,6 @@ from .poses import (
     UPRIGHT,
     Pose,
     all_but,
-    at_rest,
     crouching,
     grounded,
     kneeling,
@@ -50,14 +50,8 @@ DUCKING = 16
 """Frames in which somebody ducks, and as many in which they are up again."""
 LOW = 0.5
 """Metres of the head over the pelvis below which somebody lies or is bent."""
-_FLAT = 0.3
-"""Height in metres of the head below which somebody lies flat."""
 _DROPS = 0.6
 """Exponent of the time of a fall, which begins slowly."""
-FOLDS = 18
-"""Frames after lying down in which a hand comes to lie on the belly."""
-_KNEELS = 0.3
-"""Height in metres of the pelvis above which a bent person's arms reach down to the floor."""
 _HEAD = JOINT["head"]
 _LOW = ("lies", "sits on the ground")
 """Postures from which people sit up and get their feet under them before they stand."""
@@ -149,17 +143,6 @@ def _on_the_way(
     return ends, {at + round((1 - share) ** pace * (ends - at)): pose for share, pose in on_the_way}
 
 
-def still_down(poses: list[Pose], stop: int, more: int) -> list[Pose]:
-    """Poses of a beat that ends before frame ``stop``, and of ``more`` frames behind it if it ends on the floor.
-
-    A network that is free there may put a trunk far into the floor. The body is raised out of it, smoothly, and so are
-    the frames before.
-    """
-    if not more or not poses or poses[-1][0] < stop - 1 or poses[-1][1][0, 1] > UPRIGHT:
-        return poses
-    return [*poses, *sorted(_stays(poses[-1][1], stop, stop + more).items(), key=lambda pose: pose[0])]
-
-
 def posture_parts(poses: list[Pose], person: int, score: Score, stretch: Stretch, tail: int) -> list[Part]:
     """The parts of a person's posture, as far as they fall into a window and the ``tail`` frames behind it.
 
@@ -172,38 +155,27 @@ def posture_parts(poses: list[Pose], person: int, score: Score, stretch: Stretch
     """
     who, window = "ab"[person], stretch.window
     busy = who in score.gestures or (score.touch is not None and score.touch.person == who)
-    poses = still_down(poses, stretch.stop, tail)
+    if tail and poses and poses[-1][0] == stretch.stop - 1 and poses[-1][1][0, 1] <= UPRIGHT:
+        poses += sorted(_stays(poses[-1][1], stretch.stop, stretch.stop + tail).items())  # or the trunk sinks in
     return [
         stretch.known(person, np.asarray(frames) - stretch.start, known, joints)
-        for joints, frames, known in posture_joints(
-            poses, window.start, window.stop + tail, arms=not busy, loose=who in score.loose
-        )
+        for joints, frames, known in posture_joints(poses, window.start, window.stop + tail, arms=not busy)
     ]
 
 
 def posture_joints(
-    poses: list[Pose], first: int, last: int, *, arms: bool = False, loose: bool = False
+    poses: list[Pose], first: int, last: int, *, arms: bool = False
 ) -> Iterator[tuple[Sequence[int], list[int], Array]]:
     """The joints, frames and poses (N, 22, 3) from ``first`` to before ``last`` that are given.
 
-    Pelvis and legs, and the trunk and head of those who lie or bend down, which the network would raise; with
-    ``arms`` also the arms of those who bend down, and with ``loose`` of those who lie.
+    Pelvis and legs, and the trunk and head of those who lie or bend down, which the network would raise, with their
+    ``arms`` or without.
     """
-    down = [bool(pose[_HEAD, 1] - pose[0, 1] < LOW) for _, pose in poses]
-    gets_down = (frame for (frame, _), was, now in zip(poses[1:], down, down[1:], strict=False) if now > was)
-    folds = next(gets_down, first - FOLDS) + FOLDS
-    for joints, lies in ((LOWER, False), (all_but(HANDS), True)):
-        inside = [each for each, low in zip(poses, down, strict=True) if first <= each[0] < last and low is lies]
-        stoops = bool(inside) and inside[-1][1][0, 1] > _KNEELS
-        laid = [
-            lies and (arms if stoops else loose and frame >= folds and bool(pose[_HEAD, 1] < _FLAT))
-            for frame, pose in inside
-        ]
-        for own, given in ((False, joints), (True, (*joints, *HANDS))):
-            shown = [each for each, with_hands in zip(inside, laid, strict=True) if with_hands == own]
-            if shown:
-                known = np.stack([pose for _, pose in shown])
-                yield given, [frame for frame, _ in shown], known if stoops or not own else at_rest(known)
+    for low, joints in ((False, LOWER), (True, ALL if arms else all_but(HANDS))):
+        inside = [(frame, pose) for frame, pose in poses if bool(pose[_HEAD, 1] - pose[0, 1] < LOW) is low]
+        inside = [(frame, pose) for frame, pose in inside if first <= frame < last]
+        if inside:
+            yield joints, [frame for frame, _ in inside], np.stack([pose for _, pose in inside])
 
 
 def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:

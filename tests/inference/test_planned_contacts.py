@@ -250,17 +250,6 @@ def test_nobody_comes_up_who_is_there_or_has_a_way_of_their_own() -> None:
     assert coming(Score(), far, ()) == ()
 
 
-def test_a_couple_in_hold_steps_and_begins_in_it(engine: Engine) -> None:
-    found = made(engine, "A couple dances a waltz.")
-    joined = nearest(found, 0, ["left_wrist"], ["right_wrist"])
-    assert joined[:10].max() < 0.3, "they stand in the hold as the story begins"
-    middle = found[:, :, 0].mean(axis=0)[30:120, [0, 2]]
-    assert np.linalg.norm(np.diff(middle, axis=0), axis=-1).sum() > 0.6, "and go to and fro"
-    ankles = found[0, 30:120, [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]][..., [0, 2]]
-    speeds = np.linalg.norm(np.gradient(ankles, axis=1), axis=-1) * 30
-    assert (speeds.max(axis=1) > 0.8).all() and np.median(speeds) < 0.1, "in steps, on feet that stand"
-
-
 def test_who_sits_keeps_still_between_the_given_poses(engine: Engine) -> None:
     seated = made(engine, "Person A is sitting.")[0].astype(float)
     legs = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("hip", "knee", "ankle")]

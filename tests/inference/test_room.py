@@ -10,7 +10,7 @@ import pytest
 from acts import read
 from acts.staging.beginnings import BODY, distance, roomy
 from acts.staging.places import Standing
-from acts.staging.poses import at_rest, bending, lying, upright
+from acts.staging.poses import bending, lying, upright
 from acts.staging.postures import postures
 from acts.staging.score import Score
 from acts.staging.stage import score_of
@@ -127,18 +127,3 @@ def test_who_lies_down_sits_down_first_and_takes_longer_than_who_falls() -> None
     assert flat["lies down"] - flat["falls over"] > 30 and flat["lies down"] - 60 < 105
     hurried = postures(score("They wave.", "Person A lies down."), 1, 0, 60, 110, stand, up)
     assert hurried[-1][1][0, 1] < 0.2, "in a short beat as well"
-
-
-def test_who_lies_at_rest_has_a_hand_on_the_belly() -> None:
-    for angle in (0.0, 1.3, -2.5):
-        pose = lying(np.array([0.5, -0.2]), angle)
-        found = at_rest(pose[None])[0]
-        moved = np.flatnonzero(np.abs(found - pose).max(axis=1) > 1e-9)
-        assert {SMPL22.joint_names[joint] for joint in moved} == {"right_elbow", "right_wrist"}
-        ends = [SMPL22.index(f"right_{joint}") for joint in ("shoulder", "elbow", "wrist")]
-        np.testing.assert_allclose(
-            *(np.linalg.norm(np.diff(p[ends], axis=0), axis=-1) for p in (pose, found)), atol=1e-6
-        )
-        trunk = (found[0] + found[SMPL22.index("spine2")]) / 2
-        hand = found[ends[2]] - trunk
-        assert 0.08 < hand[1] < 0.2 and np.linalg.norm(hand[[0, 2]]) < 0.12
