@@ -47,8 +47,6 @@ TWIRL = 0.42
 """Metres between the pelvises of two people while one turns under the other's arm."""
 _OVER = 1.88
 """Height in metres of the hands over the person who turns under them."""
-_NEARLY = 0.2
-"""Metres more than in a hold at which two who begin in it stand."""
 _HIPS = [JOINT["left_hip"], JOINT["right_hip"]]
 _HELD = 45
 """Frames before somebody is up in which their hand is held."""
@@ -99,9 +97,7 @@ def joined(hold: str, places: Array) -> Array:
 def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:
     """The trunks and hands of two people in a hold."""
     courses = [stretch.course(person) for person in (0, 1)]
-    apart = float(np.linalg.norm(np.subtract(*stretch.stand.places)))
-    begun = stretch.start == 0 and apart < HOLDS[hold].apart + _NEARLY  # a story that begins in the hold
-    at = stretch.shown(np.arange(0 if begun else REACHES, stretch.frames, OFTEN))
+    at = stretch.shown(np.arange(REACHES, stretch.frames, OFTEN))
     wrists = joined(hold, np.stack([course.places[at] for course in courses]))
     return _with_hands(stretch, at, HOLDS[hold].lean, wrists, WRISTS, [*TRUNK, *WRISTS])
 
