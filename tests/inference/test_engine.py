@@ -15,7 +15,7 @@ from tests.inference.runs import run
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, Result
 from webdemo.inference.engine import Engine
 
-REQUEST = GenerateRequest(prompt="Two people shake hands.", seconds=2.0, seed=7, steps=6)
+REQUEST = GenerateRequest(prompt="Two people shake hands.", seconds=2.0, seed=7, steps=6, split=False, planned=False)
 
 
 def test_progress_counts_every_step_and_ends_in_one_result(engine: Engine) -> None:
