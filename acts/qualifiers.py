@@ -63,6 +63,8 @@ def qualifiers(
     if act.distance is not None:
         near = f"happens(near({1.3 * act.distance + 0.2:.2f}), 1)" if "metres" in names else ""
         way = f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))"
+        if goes and goes.way == "around":  # so far from each other
+            way = f"happens(both(near({1.2 * act.distance + 0.1:.2f}), without(near({0.8 * act.distance:.2f}))), 1)"
         yield "how far", way if goes else near
     if act.seconds is not None:
         yield "how long", ""

@@ -91,7 +91,7 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
     if "past" in ways and ways["past"].speed <= CREEPS:
         gap = min(gap, max(0.55 * seconds * ways["past"].speed, 1.2))
-    gap = next((ways[way].near for way in ("hold", "spar") if way in ways), gap)
+    gap = next((ways[way].near for way in ("hold", "spar", "around") if way in ways and ways[way].near), gap)
     for way in ("to", "behind", "beside"):
         if way in ways:
             gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0))
@@ -321,7 +321,7 @@ class Take:
     def of_places(self, stand: Standing, score: Score) -> Standing:
         """The places at which a story begins whose first beat leaves them free."""
         fixed = score.joined or score.has_places or score.strike or score.touch or score.linked or score.reaching
-        if fixed or {move.way for move in score.moves} & _REACHING:
+        if fixed or any(move.way in _REACHING or (move.way == "around" and move.near) for move in score.moves):
             return stand
         a, b = stand.places
         beside, ahead = self.apart * (b - a)

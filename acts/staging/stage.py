@@ -285,7 +285,7 @@ class _Stage:
             linked=shape.linked,
             late=way != "after" and self._late(act),
             metres=act.distance if act.distance is not None and way in ("ahead", "back") else shape.metres,
-            near=shape.near,
+            near=act.distance if act.distance is not None and way == "around" else shape.near,
             backwards=shape.backwards or (way == "away" and act.direction == "back"),
             gait=shape.gait or (ON_TIPTOE if ON_TIPTOE in act.manner else ""),
             rightwards=act.direction in _RIGHTWARDS,

@@ -13,6 +13,7 @@ from acts.plan import Act, Relation
 from motion import Duet
 from motion.metrics.sentences.joints import Motion
 from motion.skeleton import SBU15
+from motion.transforms import heading_matrix
 from tests.motion.metrics.test_sentence_shapes import duet, each, index, put, shift, spin, tilt
 
 
@@ -347,6 +348,13 @@ def strolling(both: np.ndarray) -> None:
     both[1] = both[0] + [0.3, 0, 0]
 
 
+def circling(both: np.ndarray) -> None:
+    """Both go once around the middle between them."""
+    middle = both[:, 0, 0].mean(axis=0) * [1, 0, 1]
+    turns = heading_matrix(np.linspace(0, 2 * np.pi, both.shape[1]))
+    both[:] = np.einsum("tij,ptkj->ptki", turns, both - middle) + middle
+
+
 HELD_OUT = put("left_wrist", (0.2, 0.4, 0.4))
 
 
@@ -366,6 +374,11 @@ def test_what_is_there_is_seen_at_the_distance_and_the_pace_that_the_words_name(
     sentence: str, motion: Motion, done: bool
 ) -> None:
     assert all(verdicts(sentence, motion)) is done
+
+
+def test_those_who_circle_each_other_are_as_far_apart_as_the_words_say() -> None:
+    for metres, done in ((1.0, True), (2.0, False), (0.5, False)):
+        assert one(told("circle-together", who="ab", distance=metres), duet(circling, gap=1.1)).done is done
 
 
 def test_strides_of_somebody_who_sneaks_are_not_fast() -> None:

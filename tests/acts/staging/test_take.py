@@ -32,6 +32,12 @@ def test_they_go_round_either_way_unless_it_is_told() -> None:
     assert {score.moves[0].rightwards for score in scores("A walks around B clockwise.")} == {True}
 
 
+def test_those_who_circle_each_other_are_as_far_apart_as_it_is_told() -> None:
+    score = score_of(read("They circle each other, two metres apart.").acts)
+    usual = beginning([score], [5.0])
+    assert {round(take.of_places(usual, score).gap(), 6) for take in TAKES} == {2.0}
+
+
 def test_walks_are_faster_and_slower_unless_it_is_told() -> None:
     usual = score_of(read("A walks up to B.").acts).moves[0].speed
     speeds = np.array([score.moves[0].speed for score in scores("A walks up to B.")]) / usual
