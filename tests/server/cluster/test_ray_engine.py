@@ -25,7 +25,7 @@ from webdemo.inference.run import Progress, Result
 from webdemo.server.cluster.ray_engine import RayEngine
 
 pytestmark = [pytest.mark.slow, pytest.mark.ray]
-WANTED = GenerateRequest(prompt="Two people shake hands.", seconds=1.0, steps=6, seed=5)
+WANTED = GenerateRequest(prompt="Two people shake hands.", seconds=1.0, steps=6, seed=5, split=False, planned=False)
 LONG = replace(WANTED, steps=400, damping=0.0, cleanup=False)
 """Takes seconds, so that something can happen meanwhile."""
 TERMS: list[int] = []
