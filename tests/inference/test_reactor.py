@@ -138,14 +138,6 @@ def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNe
     torch.testing.assert_close(streamed, whole, atol=1e-4, rtol=0)
 
 
-def test_frames_come_one_by_one_as_the_result_has_them(engine: Engine) -> None:
-    live = list(engine.live(REQUEST))
-    assert [frame.index for frame in live] == list(range(75))
-    assert all(frame.seconds > 0 for frame in live)
-    shown = np.stack([frame.positions[0] for frame in live]).astype(np.float32)
-    assert shown.tobytes() == react(engine).duets[0].b.positions.astype(np.float32).tobytes()
-
-
 @pytest.mark.parametrize("mode", ["online", "offline"])
 def test_the_given_person_stays_and_the_reaction_differs_by_seed_and_words(engine: Engine, mode: str) -> None:
     result = react(engine, mode=mode, samples=2)

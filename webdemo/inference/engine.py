@@ -30,7 +30,7 @@ from webdemo.inference.finish.looks import as_given, enlarged, furnished, length
 from webdemo.inference.method import Pipeline
 from webdemo.inference.methods import WEIGHTS
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
-from webdemo.inference.requests.live import LiveFrame, LivePartner, LiveTake, check_partner
+from webdemo.inference.requests.live import LivePartner, LiveTake, check_partner
 from webdemo.inference.requests.predict import PredictRequest
 from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
@@ -117,18 +117,6 @@ class Engine:
                 )
                 event = replace(event, duets=duets, manifest=manifest, timings=event.timings or timer.timings)
             yield event
-
-    def live(self, request: ReactRequest) -> Iterator[LiveFrame]:
-        """The frames of an online reaction, each given as soon as the actor's frame has come.
-
-        Raises:
-            InputError: for a request that is not online.
-        """
-        if request.mode != "online":
-            raise InputError("Only an online reaction can be streamed: choose model regennet, mode online.")
-        pipeline: Any = self.pipeline(request.model)
-        _take_threads(pipeline)
-        return pipeline.live(request)
 
     def partner(self, name: str, *, seed: int = 0) -> LivePartner:
         """A partner who answers a stream of poses, one of :data:`webdemo.inference.requests.live.PARTNERS`.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -102,9 +101,8 @@ def read_sentences(path: Path) -> tuple[Sentence, ...]:
 
     Args:
         path: JSON in the form of ``sentences.json``, in which ``tags``, ``named``, ``ordered`` and ``rule`` may be left
-            out; TOML with ``sentence`` tables of the same fields, which may have ``clauses``, a list of [part of the
-            words, condition], in place of ``rule``, and with ``sealed`` for the whole file; or text with a sentence a
-            line, of which the known ones bring their rules along.
+            out, and ``clauses``, a list of [part of the words, condition], may stand in place of ``rule``; or text with
+            a sentence a line, of which the known ones bring their rules along.
 
     Raises:
         InputError: if the file is missing, too large, or a sentence or rule in it cannot be read.
@@ -115,13 +113,7 @@ def read_sentences(path: Path) -> tuple[Sentence, ...]:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path} cannot be read ({type(error).__name__}): name a text or JSON file.") from None
-    if path.suffix.lower() == ".toml":
-        try:
-            tables = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
-            raise InputError(f"{path.name} is not TOML ({error}): see docs/own-model.md.") from None
-        sentences = _given(tables.get("sentence"), path.name, sealed=tables.get("sealed") is True)
-    elif path.suffix.lower() != ".json":
+    if path.suffix.lower() != ".json":
         known = {sentence.words: sentence for sentence in load_sentences()}
         lines = [line.strip() for line in text.splitlines() if line.strip()]
         rows = [{"words": line} for line in lines if line not in known]
@@ -138,7 +130,7 @@ def read_sentences(path: Path) -> tuple[Sentence, ...]:
     return tuple(sentences)
 
 
-def _given(rows: object, name: str, *, sealed: bool = False) -> list[Sentence]:
+def _given(rows: object, name: str) -> list[Sentence]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) and row.get("words") for row in rows):
         raise InputError(f"{name} must be a list of objects that have `words`: see docs/own-model.md.")
     still = Motion(np.zeros((2, 30, SMPL22.num_joints, 3)) + SMPL22.rest_positions(), 30.0)
@@ -149,15 +141,14 @@ def _given(rows: object, name: str, *, sealed: bool = False) -> list[Sentence]:
             clauses = [(str(text), str(rule)) for text, rule in row.get("clauses", ())]
             rule = [rule for _, rule in clauses] or row.get("rule", ())
             row |= {"tags": tuple(row.get("tags", ())), "rule": tuple(rule)}
-            row |= {"clauses": tuple(text for text, _ in clauses), "sealed": sealed}
-            sentence = Sentence(**row)
+            sentence = Sentence(**row | {"clauses": tuple(text for text, _ in clauses)})
             if not all(text in sentence.words for text in sentence.clauses):
                 raise ValueError("a clause is no part of its words")
             if not re.fullmatch(r"[\w-]{1,60}", sentence.id) or not 0 < float(sentence.seconds) <= 60:
                 raise ValueError("its id or its seconds cannot be used")
             sentence.judge(still)
         except (TypeError, ValueError, IndexError, RecursionError) as error:
-            why = "its fields or its rule are wrong" if sealed else error
+            why = "its fields or its rule are wrong" if row.get("sealed") else error
             raise InputError(f"Sentence {i + 1} of {name} cannot be used: {why}.") from None
         made.append(sentence)
     return made

@@ -13,18 +13,13 @@ from motion.metrics.sentences.catalogue import score, table
 
 from .puppets import play
 
-TEXT = """sealed = {}
-[[sentence]]
-id = "one"
-words = "They zigzag, then they hug."
-named = false
-clauses = [["They zigzag", "happens(walks(a))"], ["they hug", "then(walks(a), hugs()) and never(low(a))"]]
-"""
+CLAUSES = [["They zigzag", "happens(walks(a))"], ["they hug", "then(walks(a), hugs()) and never(low(a))"]]
 
 
-def read(folder: Path, sealed: bool, text: str = TEXT) -> tuple:
-    path = folder / "set.toml"
-    path.write_text(text.format("true" if sealed else "false"))
+def read(folder: Path, sealed: bool, old: str = "", new: str = "") -> tuple:
+    row = {"words": "They zigzag, then they hug.", "clauses": CLAUSES, "sealed": sealed}
+    path = folder / "set.json"
+    path.write_text(json.dumps([row]).replace(old, new))
     return read_sentences(path)
 
 
@@ -42,11 +37,6 @@ def test_clauses_are_the_conditions_and_sealed_scores_hold_no_words(tmp_path: Pa
 @pytest.mark.parametrize(("old", "new"), [("hugs()", "embraces()"), ('"they hug"', '"they kiss"')])
 def test_a_sealed_sentence_that_cannot_be_used_is_not_quoted(tmp_path: Path, old: str, new: str) -> None:
     with pytest.raises(InputError) as caught:
-        read(tmp_path, True, TEXT.replace(old, new))
-    assert "Sentence 1 of set.toml" in str(caught.value)
+        read(tmp_path, True, old, new)
+    assert "Sentence 1 of set.json" in str(caught.value)
     assert "embraces" not in str(caught.value) and "kiss" not in str(caught.value)
-
-
-def test_text_that_is_not_toml_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="is not TOML"):
-        read(tmp_path, False, "[[sentence")

@@ -24,7 +24,7 @@ VOICES = ("caption", "visitor", "studio")
 
 
 def sentences() -> tuple[Sentence, ...]:
-    return read_sentences(FOLDER / "sealed_sentences.toml")
+    return read_sentences(FOLDER / "sealed_sentences.json")
 
 
 def wrong(ids: list[str]) -> None:

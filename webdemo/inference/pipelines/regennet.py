@@ -24,14 +24,13 @@ from models.regennet.network import ROW_WIDTH, ReactionStream, ReGenNet
 from models.regennet.released import ROWS, decode, encode, load_released
 from models.text import MiniLM
 from models.weights_io import load_network
-from motion import FPS, Clip, InputError
+from motion import InputError
 from motion.transforms import Placement
 from motion.vectors import Array
 from webdemo.inference.finish.cleanup import FollowingCleanup, clean_person
 from webdemo.inference.finish.damping import Beside, Damping
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.requests import ReactRequest
-from webdemo.inference.requests.live import LiveFrame
 from webdemo.inference.run import CancelToken, Progress, Result, StageTimer
 
 from .given import reacted, settle
@@ -155,32 +154,6 @@ class ReGenNetPipeline:
 
     # ---- online ----------------------------------------------------------------------------------
 
-    def live(self, request: ReactRequest) -> Iterator[LiveFrame]:
-        """Yields the reaction's frames; each one is computed before the actor's next frame is read."""
-        condition = self.condition(request.prompt, request.samples)
-        return self._live(request, condition)
-
-    def _live(self, request: ReactRequest, condition: Any) -> Iterator[LiveFrame]:
-        off: Array | None = None
-        finish = [FollowingCleanup() for _ in range(request.samples)]
-        placement: Placement | None = None
-        for index, frame in enumerate(request.actor.positions):
-            began = time.perf_counter()
-            if placement is None:  # from the first frame only
-                placement = Placement.of(Clip(frame[None], FPS, request.actor.skeleton), "a")
-                answer = self._stream(request, condition, placement)
-            raw, contacts = answer(placement.to_network(frame))
-            if request.first_pose is not None:
-                if off is None:
-                    off = placement.to_network(request.first_pose) - raw
-                raw = raw + settle(off, np.array([index]))[:, 0]
-            shown = raw
-            if request.cleanup and np.isfinite(raw).all():
-                people = zip(finish, raw, contacts, strict=True)
-                shown = np.stack([clean(person, standing) for clean, person, standing in people])
-            raw, shown = placement.to_world(raw), placement.to_world(shown)
-            yield LiveFrame(index, raw, shown, time.perf_counter() - began)
-
     def _stream(self, request: ReactRequest, condition: Any, placement: Placement) -> Answer:
         """Answers an actor's pose (22, 3) by poses (samples, 22, 3) and contact scores (samples, 4) of the feet."""
         frames, model = request.actor.num_frames, self.model
@@ -197,19 +170,32 @@ class ReGenNetPipeline:
         return answer
 
     def _online(
-        self, request: ReactRequest, condition: Tensor, cancel: CancelToken, timer: StageTimer
+        self, request: ReactRequest, condition: Any, cancel: CancelToken, timer: StageTimer
     ) -> Generator[Progress, None, tuple[Array, Array]]:
-        """Returns (raw, shown), each (samples, T, 22, 3) in the actor's world."""
-        total = request.actor.num_frames
-        live = []
-        for frame in self._live(request, condition):
-            live.append(frame)
-            yield timer.progress("sample", frame.index + 1, total, "frame")
+        """Returns (raw, shown), each (samples, T, 22, 3) in the actor's world; no frame is made of a later one's pose."""
+        actor, off = request.actor, np.zeros((22, 3))
+        placement = Placement.of(actor.cut(0, 1), "a")  # from the first frame only
+        answer = self._stream(request, condition, placement)
+        finish = [FollowingCleanup() for _ in range(request.samples)]
+        made: list[tuple[Array, Array]] = []
+        delays = []
+        for index, frame in enumerate(actor.positions):
+            began = time.perf_counter()
+            raw, contacts = answer(placement.to_network(frame))
+            if request.first_pose is not None:
+                off = off if index else placement.to_network(request.first_pose) - raw
+                raw = raw + settle(off, np.array([index]))[:, 0]
+            shown = raw
+            if request.cleanup and np.isfinite(raw).all():
+                people = zip(finish, raw, contacts, strict=True)
+                shown = np.stack([clean(person, standing) for clean, person, standing in people])
+            made.append((placement.to_world(raw), placement.to_world(shown)))
+            delays.append(time.perf_counter() - began)
+            yield timer.progress("sample", index + 1, actor.num_frames, "frame")
             cancel.raise_if_cancelled()
-        delays = [frame.seconds for frame in live]
-        timer.stages["delay of a frame, median"] = round(float(np.median(delays)), 4)
-        timer.stages["delay of a frame, longest"] = round(max(delays), 4)
-        raw, shown = (np.stack([getattr(f, name) for f in live], axis=1) for name in ("raw", "positions"))
+        timer.stages["delay of a frame, mean"] = round(float(np.mean(delays)), 5)
+        timer.stages["delay of a frame, longest"] = round(max(delays), 5)
+        raw, shown = (np.stack(poses, axis=1) for poses in zip(*made, strict=True))
         return raw, shown
 
 

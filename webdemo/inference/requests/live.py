@@ -1,4 +1,4 @@
-"""A frame of an online reaction, a live stream that somebody keeps, and a partner in one.
+"""A live stream that somebody keeps, and a partner in one.
 
 This module does not import torch: the page uses it before any network is loaded.
 """
@@ -30,23 +30,6 @@ def check_partner(name: str) -> None:
     """Raises InputError for what is none of :data:`PARTNERS`."""
     if name not in PARTNERS:
         raise InputError(f"There is no live partner {name!r:.40}: choose {' or '.join(PARTNERS)}.")
-
-
-@dataclass(frozen=True)
-class LiveFrame:
-    """One frame of a live reaction.
-
-    Attributes:
-        index: its number from 0.
-        raw: (samples, 22, 3) metres, the network's output in the actor's world.
-        positions: (samples, 22, 3) metres, as shown.
-        seconds: that the network took for it.
-    """
-
-    index: int
-    raw: Array
-    positions: Array
-    seconds: float
 
 
 @dataclass(frozen=True, kw_only=True)
