@@ -14,7 +14,7 @@ import platform
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, cast
 
@@ -22,7 +22,7 @@ from acts.accounting import account
 from acts.checking import NO_RULE, checked
 from acts.plan import PlanFrames
 from acts.things.furnishing import judge_things
-from motion import SMPL22, Clip, Duet, InputError
+from motion import SMPL22, Clip, Duet
 from motion.metrics.sentences.joints import Motion
 from webdemo.inference import methods
 from webdemo.inference.finish.cleanup import standing_clear
@@ -172,16 +172,9 @@ def _manifest(request: Any, pipeline: Pipeline) -> dict[str, Any]:
         "request": request.to_dict(),
         "model": pipeline.name,
         "weights_sha256": pipeline.digest,
-        "versions": {name: _version(name) for name in ("torch", "diffusers", "numpy")}
+        "versions": {name: version(name) for name in ("torch", "diffusers", "numpy")}
         | {"python": platform.python_version()},
     }
-
-
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "unknown"
 
 
 # ---- tries: further seeds until a motion shows all that its words say, or the best of them --------------------

@@ -172,7 +172,7 @@ class ReGenNetPipeline:
     def _online(
         self, request: ReactRequest, condition: Any, cancel: CancelToken, timer: StageTimer
     ) -> Generator[Progress, None, tuple[Array, Array]]:
-        """Returns (raw, shown), each (samples, T, 22, 3) in the actor's world; no frame is made of a later one's pose."""
+        """Returns (raw, shown), each (samples, T, 22, 3) in the actor's world; a frame knows no later pose."""
         actor, off = request.actor, np.zeros((22, 3))
         placement = Placement.of(actor.cut(0, 1), "a")  # from the first frame only
         answer = self._stream(request, condition, placement)

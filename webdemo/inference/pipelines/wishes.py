@@ -123,8 +123,7 @@ def _walked(
     after = next((each for each in fixed if each.frame > high), None)
     walked, start = _reached(line, low, before, placement, ROLES.index(path.person))
     if after is not None:
-        walked, _ = _chased(walked[::-1], Fixed(0, after.place), after.frame - high, len(walked) - 1)
-        walked = walked[::-1]
+        walked = _chased(walked[::-1], Fixed(0, after.place), after.frame - high, len(walked) - 1)[::-1]
     behind = np.linalg.norm(walked[low - start :] - line, axis=1)
     late = np.flatnonzero(behind > 0.01)
     if start < low or len(late):
@@ -147,11 +146,10 @@ def _reached(line: Array, low: int, before: Fixed | None, placement: Placement, 
         return line, low
     ahead = low - before.frame - 1
     wanted = np.concatenate([line[:1].repeat(ahead, axis=0), line])
-    walked, _ = _chased(wanted, before, 1, len(wanted))
-    return walked, before.frame + 1
+    return _chased(wanted, before, 1, len(wanted)), before.frame + 1
 
 
-def _chased(wanted: Array, begins: Fixed, gap: int, frames: int) -> tuple[Array, float]:
+def _chased(wanted: Array, begins: Fixed, gap: int, frames: int) -> Array:
     """Places (N, 2), one a frame, of a person who runs after the wanted ones.
 
     Args:
@@ -171,7 +169,7 @@ def _chased(wanted: Array, begins: Fixed, gap: int, frames: int) -> tuple[Array,
         chased[i] = wanted[i] if way <= reach else here + reach / way * line
         speed = float(np.linalg.norm(chased[i] - here)) * FPS / since
         here = chased[i]
-    return chased, speed
+    return chased
 
 
 def _note(path: FloorPath, before: Fixed | None, line: Array, behind: Array, low: int) -> list[str]:
