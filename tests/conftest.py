@@ -1,5 +1,6 @@
 """A cache of their own for all tests, so that they push nothing of the user's out, and the mark of the quick ones."""
 
+import os
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,6 +9,7 @@ import pytest
 
 from tests.quick import TESTS, listed
 
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")  # before a test imports Gradio: it asks no other host
 QUICK = {TESTS / module for module in listed()}
 
 

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import argparse
 import io
-import shutil
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import Page, expect, sync_playwright
+from playwright.sync_api import Page, expect
 
-from tests.e2e.conftest import FLAGS
 from tests.e2e.playing import pause
+from webdemo.benchmark.browser import chromium
 
 SIZE = (1240, 775)
 SHOWN = (992, 620)
@@ -53,13 +52,11 @@ def main() -> None:
     parser.add_argument("url", help="of a running lab")
     parser.add_argument("out", type=Path, help="the .webp to write")
     options = parser.parse_args()
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+    with chromium() as browser:
         page = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]})
         page.goto(options.url)
         expect(page.locator("#model-state")).to_contain_text("Model ready", timeout=60_000)
         pictures = record(page, generate(page))
-        browser.close()
     pictures[0].save(
         options.out, save_all=True, append_images=pictures[1:], duration=round(1000 / FPS), loop=0, quality=45
     )

@@ -7,17 +7,16 @@ import re
 import shlex
 import subprocess
 import sys
-import time
-import urllib.error
-import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 
+import httpx
 import pytest
 
 from motion import InputError
 from tests.server.lab import free_port
 from webdemo import cli
+from webdemo.benchmark.server import wait_until
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.methods import failed, method, methods, register_settings
 from webdemo.inference.own import entries
@@ -65,24 +64,13 @@ def test_the_page_of_the_document_shows_the_toy(folder: Path) -> None:
     port = free_port()
     command = [sys.executable, *serve[1:], "--port", str(port)]
     environment = {"PYTHONPATH": str(ROOT), "XDG_DATA_HOME": str(folder / "data"), "PATH": "/usr/bin:/bin"}
-    with subprocess.Popen(command, cwd=folder, env=environment, stderr=subprocess.PIPE, text=True) as server:
+    with subprocess.Popen(command, cwd=folder, env=environment) as server:
         try:
-            page = _page(port, server)
+            wait_until(url := f"http://127.0.0.1:{port}/config", "", server)
+            page = httpx.get(url, timeout=60).text
         finally:
             server.terminate()
     assert "Toy twins" in page
-
-
-def _page(port: int, server: subprocess.Popen[str]) -> str:
-    until = time.monotonic() + 200
-    while time.monotonic() < until:
-        assert server.poll() is None, server.stderr and server.stderr.read()
-        try:
-            with urllib.request.urlopen(f"http://127.0.0.1:{port}/config", timeout=60) as answer:
-                return str(answer.read().decode())
-        except (urllib.error.URLError, OSError):
-            time.sleep(0.5)
-    raise AssertionError("The page did not come up.")
 
 
 def test_the_tables_of_the_document_are_read(folder: Path) -> None:

@@ -7,11 +7,8 @@ a machine that is meant to have one cannot lose them quietly.
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
-import time
-import urllib.request
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,29 +16,20 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.server.lab import free_port
+from motion import InputError
+from tests.server.lab import ROOT, free_port
+from webdemo.benchmark import browser
+from webdemo.benchmark.server import serving, wait_until
 
 from .plain import serve
 from .playing import press
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 LOOPBACK = {"127.0.0.1", "localhost", "::1", ""}
 LEAVING = (  # what Gradio's script says of its open streams as a page is left
     "AbortError: signal is aborted",
     "AbortError: BodyStreamBuffer was aborted",
     "Unexpected error Connection errored out.",
 )
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
-
 CALM = """
 const ask = window.requestAnimationFrame.bind(window), drop = window.cancelAnimationFrame.bind(window);
 const asked = new Map();
@@ -63,33 +51,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.timeout(LONGEST))
 
 
-def _missing(reason: str) -> None:
-    if os.environ.get("PASDEDEUX_REQUIRE_BROWSER") == "1":
-        pytest.fail(reason)
-    pytest.skip(reason)
-
-
-def _chromium() -> str | None:
-    for name in ("/usr/bin/chromium", "chromium", "chromium-browser", "google-chrome"):
-        if found := shutil.which(name):
-            return found
-    return None
-
-
 @pytest.fixture(scope="session")
 def chromium():
     """A headless Chromium that draws WebGL on the processor."""
     try:
-        from playwright import sync_api
-    except ImportError:
-        _missing("playwright is not installed: pip install playwright (the system's Chromium will do)")
-    path = _chromium()
-    if path is None:
-        _missing("no Chromium on this machine: install the package chromium, or set PATH to find one")
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=FLAGS)
-        yield browser
-        browser.close()
+        with browser.chromium() as opened:
+            yield opened
+    except InputError as missing:
+        if os.environ.get("PASDEDEUX_REQUIRE_BROWSER") == "1":
+            raise
+        pytest.skip(str(missing))
 
 
 @pytest.fixture(scope="session")
@@ -234,38 +205,6 @@ def shared_page(request: pytest.FixtureRequest, server: SimpleNamespace, open_ke
 
 
 @pytest.fixture(scope="session")
-def start_server() -> Iterator[Callable[..., str]]:
-    """``start_server([script, args…, "{port}"])`` runs Python on them and gives the URL once it answers."""
-    running: list[subprocess.Popen] = []
-
-    def start(
-        arguments: list[str], *, seconds: float = 180.0, env: dict[str, str] | None = None, log: Path | None = None
-    ) -> str:
-        port = free_port()
-        command = [sys.executable, *(argument.format(port=port) for argument in arguments)]
-        environment = {**os.environ, "GRADIO_ANALYTICS_ENABLED": "False", "OMP_NUM_THREADS": "1", **(env or {})}
-        kept = log.open("wb") if log is not None else None
-        server = subprocess.Popen(command, cwd=REPOSITORY, env=environment, stdout=subprocess.DEVNULL, stderr=kept)
-        running.append(server)
-        url = f"http://127.0.0.1:{port}/"
-        until = time.monotonic() + seconds
-        while time.monotonic() < until:
-            if server.poll() is not None:
-                raise RuntimeError(f"{command} ended with {server.returncode} before it answered.")
-            try:
-                urllib.request.urlopen(url, timeout=2).close()
-                return url
-            except OSError:
-                time.sleep(0.2)
-        raise TimeoutError(f"{command} did not answer within {seconds:g} s.")
-
-    yield start
-    for server in running:
-        server.terminate()
-        server.wait(timeout=20)
-
-
-@pytest.fixture(scope="session")
 def _stub_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
     from .serving import stub_server
 
@@ -286,23 +225,25 @@ def server(request: pytest.FixtureRequest, _stub_server: SimpleNamespace, _share
 
 
 @pytest.fixture(scope="session")
-def _app(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> SimpleNamespace:
-    folder = tmp_path_factory.mktemp("app")
-    env = {"PASDEDEUX_DATA": str(folder / "data"), "PASDEDEUX_FREE_MEGABYTES": "0"}
-    url = start_server(["app.py", "--port", "{port}"], env=env, log=folder / "log")
-    return SimpleNamespace(url=url, log=folder / "log")
-
-
-@pytest.fixture(scope="session")
-def lab(_app: SimpleNamespace) -> str:
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of what ``python app.py`` serves, with the shipped networks."""
-    return _app.url
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("OMP_NUM_THREADS", "1")
+        with serving(tmp_path_factory.mktemp("app")) as (url, process):
+            wait_until(url, "", process)
+            yield url
 
 
 @pytest.fixture(scope="session")
-def player_url(start_server) -> str:
+def player_url() -> Iterator[str]:
     """The player in a Gradio page with nothing else."""
-    return start_server(["tests/e2e/harness.py", "{port}"])
+    port = free_port()
+    with subprocess.Popen(
+        [sys.executable, "tests/e2e/harness.py", str(port)], cwd=ROOT, stdout=subprocess.DEVNULL
+    ) as page:
+        wait_until(url := f"http://127.0.0.1:{port}/", "", page)
+        yield url
+        page.terminate()
 
 
 @pytest.fixture(scope="session")

@@ -8,6 +8,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
 from webdemo.ui.components.player import PLAYER_FOLDER
@@ -91,9 +92,9 @@ class Handler(SimpleHTTPRequestHandler):
 
 
 @contextmanager
-def serve() -> Iterator[str]:
-    """Serves the page while it is entered; yields its address."""
-    handler = functools.partial(Handler, directory=str(PLAYER_FOLDER.parent))
+def serve(folder: Path = PLAYER_FOLDER.parent) -> Iterator[str]:
+    """Serves the page and a folder while it is entered; yields its address."""
+    handler = functools.partial(Handler, directory=str(folder))
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}/"

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import functools
-import http.server
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -16,7 +13,6 @@ from playwright.sync_api import Page
 
 pytestmark = pytest.mark.e2e
 
-STATIC = Path(__file__).resolve().parents[2] / "static"
 PRELUDE = """
 const { openFilm } = await import("/camera/film.js");
 const { openWebcam } = await import("/camera/webcam.js");
@@ -39,26 +35,9 @@ const detector = (...people) => ({ begin: async () => {}, detect: async () => pe
 """
 
 
-@pytest.fixture(scope="module")
-def modules() -> Iterator[str]:
-    """The address of the folder static, and of nothing else."""
-
-    class Quiet(http.server.SimpleHTTPRequestHandler):
-        def log_message(self, *_: Any) -> None:
-            """Says nothing."""
-
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=str(STATIC)))
-    thread = threading.Thread(target=server.serve_forever, daemon=True)
-    thread.start()
-    yield f"http://127.0.0.1:{server.server_port}"
-    server.shutdown()
-    server.server_close()
-    thread.join(10)
-
-
 @pytest.fixture
-def page(open_page: Callable[..., Page], modules: str) -> Page:
-    page = open_page(f"{modules}/camera/README.md", width=400, height=300)
+def page(open_page: Callable[..., Page], plain_url: str) -> Page:
+    page = open_page(f"{plain_url}camera/README.md", width=400, height=300)
     page.set_content("<video muted></video><input type=file>")
     return page
 

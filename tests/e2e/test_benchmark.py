@@ -46,5 +46,5 @@ def test_page_and_player_are_measured(chromium: object, tmp_path: Path, monkeypa
 
 def test_no_chromium_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    with pytest.raises(InputError, match="install the package chromium"), benchmark_browser._chromium():
+    with pytest.raises(InputError, match="install the package chromium"), benchmark_browser.chromium():
         raise AssertionError("a browser was found")

@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from .conftest import FLAGS, Tabs
+from webdemo.benchmark.browser import FLAGS
+
+from .conftest import Tabs
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 

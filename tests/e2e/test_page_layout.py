@@ -60,8 +60,7 @@ def test_a_dark_page_is_dark_before_its_scripts_run(server: SimpleNamespace, ope
     assert Image.open(io.BytesIO(page.screenshot())).convert("RGB").getpixel((5, 5)) == (18, 22, 30)
 
 
-def test_the_player_is_under_ten_tabs_from_the_prompt(server: SimpleNamespace, open_page: Callable) -> None:
-    page = live(open_page(server.url))
+def test_the_player_is_under_ten_tabs_from_the_prompt(page: Page) -> None:
     page.focus("#prompt textarea")
     for _ in range(9):
         page.keyboard.press("Tab")
@@ -71,8 +70,9 @@ def test_the_player_is_under_ten_tabs_from_the_prompt(server: SimpleNamespace, o
 
 
 @pytest.mark.parametrize("width", [390, 1440])
-def test_what_is_pressed_is_24_pixels_high_and_wide(server: SimpleNamespace, open_page: Callable, width: int) -> None:
-    page = live(open_page(server.url, width=width, height=900))
+def test_what_is_pressed_is_24_pixels_high_and_wide(page: Page, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 900})
+    page.get_by_role("tab", name="Generate").click()
     ask(page, "two people shake hands")
     status(page, "done")
     page.click("#share")

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import http.server
 import re
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -17,22 +12,13 @@ from playwright.sync_api import expect
 
 from tests.server.clients import FIELDS
 
+from .plain import serve
 from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
 READY = "window.__pasdedeux?.player?.data"
 FRAME = """<link rel="icon" href="data:,"><body><iframe src="{src}" width="480" height="400"></iframe>
 <iframe src="{src}?theme=dark" sandbox="allow-scripts" width="480" height="400"></iframe></body>"""
-
-
-@contextmanager
-def another_site(folder: Path) -> Iterator[str]:
-    handler = partial(http.server.SimpleHTTPRequestHandler, directory=str(folder))
-    handler.log_message = lambda *_: None  # type: ignore[attr-defined]
-    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        yield f"http://127.0.0.1:{server.server_port}"
-        server.shutdown()
 
 
 def test_a_result_is_published_framed_and_ended(server: SimpleNamespace, open_page, tmp_path: Path) -> None:
@@ -56,8 +42,8 @@ def test_a_result_is_published_framed_and_ended(server: SimpleNamespace, open_pa
     assert public.evaluate("document.body.classList.contains('dark')")
 
     (tmp_path / "frame.html").write_text(FRAME.format(src=embed))
-    with another_site(tmp_path) as site:
-        frames = open_page(f"{site}/frame.html")
+    with serve(tmp_path) as site:
+        frames = open_page(f"{site}frame.html")
         assert len(frames.frames) == 3
         for frame in frames.frames[1:]:  # the second has no origin of its own
             frame.wait_for_function(READY, timeout=SLOW)

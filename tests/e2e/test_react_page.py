@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -15,7 +14,7 @@ from tests.motion.formats.characters import glb_takes
 from tests.ui.stub_engine import walking
 from webdemo.inference.methods import automatic, method
 
-from .playing import choose, unfold
+from .playing import choose, give_file, unfold
 from .serving import live
 
 pytestmark = pytest.mark.e2e
@@ -24,10 +23,8 @@ PAUSE = 0.01
 
 
 @pytest.fixture
-def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    page = live(open_page(server.url), "React")
-    expect(page.locator("#react-status")).to_contain_text("Push: 5.0 s")  # the example that it opens with
-    return page
+def page(shared_page: Page) -> Page:
+    return live(shared_page, "React")
 
 
 def people(page: Page, count: int) -> None:
@@ -35,8 +32,9 @@ def people(page: Page, count: int) -> None:
 
 
 def test_an_uploaded_person_is_seen_trimmed_and_gets_a_partner(page: Page, tmp_path: Path) -> None:
-    file = write(walking(12.0), tmp_path / "walkers.npz")[0]
-    page.set_input_files("#react-file input[type=file]", file)
+    """It comes first, on a page where nothing was chosen yet."""
+    expect(page.locator("#react-status")).to_contain_text("Push: 5.0 s")  # the example that it opens with
+    give_file(page, "#react-file", write(walking(12.0), tmp_path / "walkers.npz")[0])
     expect(page.locator("#react-status")).to_contain_text("0.0 to 10.0 s of 12.0 s")
     page.fill("#react-end input[type=number]", "3")
     page.press("#react-end input[type=number]", "Tab")
@@ -61,7 +59,7 @@ def test_another_animation_of_a_character_is_chosen(page: Page, tmp_path: Path) 
     positions, rotations = marching(60)
     file = tmp_path / "takes.glb"
     file.write_bytes(glb_takes(rotations, positions[:, 0], ["walk", "glide"]))
-    page.set_input_files("#react-file input[type=file]", file)
+    give_file(page, "#react-file", file)
     expect(page.locator("#react-status")).to_contain_text("1 (“walk”) was taken")
     choose(page, "#react-animation", "2 · glide")
     expect(page.locator("#react-status")).to_contain_text("2 (“glide”) was taken")
@@ -74,7 +72,7 @@ def test_a_file_that_cannot_be_read_leaves_nothing_and_a_result_is_taken(page: P
     page.get_by_role("button", name="Wave", exact=True).last.click()
     people(page, 1)
     expect(page.locator("#react-import")).to_be_hidden()  # of an example nothing had to be found
-    page.set_input_files("#react-file input[type=file]", broken)
+    give_file(page, "#react-file", broken)
     expect(page.locator("#react-status .pd-error")).to_contain_text("broken.bvh")
     expect(page.locator("#react-player .pdd-empty")).to_be_visible()
     expect(page.locator("#react-import")).to_be_hidden()
@@ -95,7 +93,7 @@ def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hea
     player = page.locator("#react-player")
     unfold(page, "#react-advanced")
     expect(page.locator("#react-method input")).to_have_value("Automatic")
-    page.set_input_files("#react-file input[type=file]", write(walking(3.0).a, tmp_path / "walker.npz")[0])
+    give_file(page, "#react-file", write(walking(3.0).a, tmp_path / "walker.npz")[0])
     expect(page.locator("#react-status")).to_contain_text("walker.npz: 3.0")
     assert player.locator(".pdd-label").all_text_contents() == ["A · given"]
     for words, title, model in (
@@ -114,7 +112,7 @@ def test_automatic_chooses_by_the_words_and_a_method_greys_those_it_does_not_hea
 
 
 def test_methods_are_compared_side_by_side(page: Page, server: SimpleNamespace, tmp_path: Path) -> None:
-    page.set_input_files("#react-file input[type=file]", write(walking(2.0).a, tmp_path / "walker.npz")[0])
+    give_file(page, "#react-file", write(walking(2.0).a, tmp_path / "walker.npz")[0])
     expect(page.locator("#react-status")).to_contain_text("walker.npz: 2.0")
     page.click("button#react-generate")
     people(page, 2)

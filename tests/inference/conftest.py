@@ -58,6 +58,12 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def shipped() -> Engine:
+    """With the shipped networks."""
+    return Engine()
+
+
+@pytest.fixture(scope="session")
 def reading_engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
     """With an untrained network that sees what is known, and drafts."""
     return Engine(tiny_weights(tmp_path_factory.mktemp("reading"), plain=False))

@@ -44,10 +44,10 @@ def test_a_sentence_with_a_path_is_made_as_a_scene_and_stays_at_its_end_unless_l
         assert scene.paths[0].points == GenerateRequest(prompt=sentence, paths=(WAY,)).paths[0].points
 
 
-def test_the_motion_follows_the_path() -> None:
+def test_the_motion_follows_the_path(shipped: Engine) -> None:
     """Also where the words would lead on: the path is the whole way."""
     request = GenerateRequest(prompt="Two people walk.", paths=(WAY,), seconds=4.0, steps=4)
-    duet = list(Engine().run(request))[-1].duets[0]
+    duet = list(shipped.run(request))[-1].duets[0]
     places = duet.positions[0, :, 0][:, [0, 2]]
     for point in request.paths[0].points:
         assert np.linalg.norm(places[round(point.seconds * 30)] - [point.x, point.z]) < 0.1

@@ -14,7 +14,6 @@ from motion import FPS, SMPL22
 from motion.metrics.quality import jerk_percentile
 from motion.transforms import facing, heading
 from webdemo.inference import Engine
-from webdemo.inference.method import WEIGHTS
 
 from .planned import made
 
@@ -186,12 +185,6 @@ def test_who_is_twirled_turns_all_the_way_round_under_joined_hands(engine: Engin
     gap = nearest(found, 0, ["right_wrist"], ["right_wrist"])[20:130]
     assert np.mean(gap < 0.2) > 0.9
     assert found[0, 20:130, SMPL22.index("right_wrist"), 1].min() > 1.6
-
-
-@pytest.fixture(scope="module")
-def shipped() -> Engine:
-    """With the shipped weights: an untrained network has no wish to turn to anybody."""
-    return Engine(WEIGHTS)
 
 
 @pytest.mark.parametrize(

@@ -20,19 +20,14 @@ def pair() -> Duet:
     return found
 
 
-@pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine()
-
-
-def futures(engine: Engine, motion: Duet, **asked: object) -> PredictResult:
+def futures(shipped: Engine, motion: Duet, **asked: object) -> PredictResult:
     request = PredictRequest(**{"motion": motion, "marker": 1.5, "seconds": 1.0, "model": MODEL} | asked)
-    (result,) = (event for event in engine.run(request) if isinstance(event, PredictResult))
+    (result,) = (event for event in shipped.run(request) if isinstance(event, PredictResult))
     return result
 
 
-def test_three_futures_follow_one_past(engine: Engine, pair: Duet) -> None:
-    result = futures(engine, pair)
+def test_three_futures_follow_one_past(shipped: Engine, pair: Duet) -> None:
+    result = futures(shipped, pair)
     made = np.stack([duet.positions for duet in result.duets])
     assert made.shape[:3] == (3, 2, 75) and result.past_frames == 45
     np.testing.assert_array_equal(made[:, :, :45], np.repeat(made[:1, :, :45], 3, axis=0))
@@ -47,16 +42,16 @@ def test_three_futures_follow_one_past(engine: Engine, pair: Duet) -> None:
     np.testing.assert_allclose(result.error, 1000 * off, atol=0.1)
 
 
-def test_a_seed_names_the_futures(engine: Engine, pair: Duet) -> None:
-    first, again, other = (futures(engine, pair, seed=seed) for seed in (0, 0, 7))
+def test_a_seed_names_the_futures(shipped: Engine, pair: Duet) -> None:
+    first, again, other = (futures(shipped, pair, seed=seed) for seed in (0, 0, 7))
     assert first.duets[1].positions.tobytes() == again.duets[1].positions.tobytes()
     assert np.abs(first.duets[1].positions - other.duets[1].positions).max() > 0.02
 
 
-def test_each_knows_of_the_other(engine: Engine, pair: Duet) -> None:
+def test_each_knows_of_the_other(shipped: Engine, pair: Duet) -> None:
     moved = pair.positions.copy()
     moved[1, :, :, 0] += 1.0
-    here, there = futures(engine, pair), futures(engine, pair.with_positions(moved))
+    here, there = futures(shipped, pair), futures(shipped, pair.with_positions(moved))
     assert np.abs(here.duets[0].positions[0] - there.duets[0].positions[0])[45:].max() > 0.01
 
 

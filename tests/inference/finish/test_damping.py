@@ -16,7 +16,6 @@ from motion import SMPL22, Duet
 from motion.metrics.quality import penetration
 from motion.skeleton import FEET
 from tests.inference.people import waver
-from webdemo.inference.engine import Engine
 from webdemo.inference.finish import damping
 from webdemo.inference.finish.damping import Beside, Damping, shares
 from webdemo.inference.requests import GenerateRequest, ReactRequest
@@ -218,12 +217,6 @@ def all_pairs(positions: torch.Tensor) -> torch.Tensor:
     a, b = ((positions[..., ends[:, 0], :] + positions[..., ends[:, 1], :]) / 2).unbind(1)
     gap = torch.cdist(a, b, compute_mode="donot_use_mm_for_euclid_dist")
     return (radii[:, None] + radii - gap).clamp_min(0).square().sum((1, 2, 3))
-
-
-@pytest.fixture(scope="module")
-def shipped() -> Engine:
-    """With the shipped weights."""
-    return Engine()
 
 
 def request(model: str, steps: int, threshold: float) -> GenerateRequest | ReactRequest:

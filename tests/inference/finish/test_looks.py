@@ -64,11 +64,11 @@ def test_a_childs_pose_is_asked_for_as_an_adults() -> None:
     np.testing.assert_allclose(kept.positions, rest, atol=1e-3)
 
 
-def test_what_comes_next_of_a_girl_is_hers(engine: Engine) -> None:
+def test_what_comes_next_of_a_girl_is_hers(engine: Engine, shipped: Engine) -> None:
     """The predictor would lift her to an adult's height."""
     motion = run(engine, GenerateRequest(prompt="A man waves at a girl.", seconds=3.0, **QUICK)).duets[0]
     request = PredictRequest(motion=motion, marker=2.0, seconds=1.0)
-    result = run(Engine(), request)
+    result = run(shipped, request)
     assert isinstance(result, PredictResult) and result.truth is not None
     (duet,) = result.duets
     assert duet.looks == ("man", "girl")

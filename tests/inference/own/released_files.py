@@ -16,7 +16,6 @@ from models.regennet.network import ReGenNet, ReGenNetConfig
 from models.text.clip import ClipTextEncoder, ClipTower
 from motion import SMPL22
 from motion.representation import encode_person
-from webdemo.inference import Engine, GenerateRequest, ReactRequest, Result
 
 MERGES = ("t w", "tw o</w>", "p e", "pe o", "w a", "wa v", "wav e</w>")
 
@@ -104,10 +103,3 @@ def write_bigraphdiff(path: Path) -> None:
     unused = {"clip.visual.proj": (2, 2), "temporal_decoder_blocks.0.ffn.linear1.weight": (2, 2)}
     state |= {name: torch.zeros(shape) for name, shape in unused.items()}
     torch.save({"encoder": state, "ep": 3, "opt_encoder": {"state": {}}}, path)
-
-
-def result_of(engine: Engine, request: GenerateRequest | ReactRequest) -> Result:
-    """The result of a request."""
-    *_, last = engine.run(request)
-    assert isinstance(last, Result)
-    return last

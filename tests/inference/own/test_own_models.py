@@ -13,7 +13,8 @@ import torch
 
 from motion import InputError
 from motion.formats import read
-from tests.inference.own.released_files import result_of, write_intergen
+from tests.inference.own.released_files import write_intergen
+from tests.inference.runs import run
 from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest, ReactRequest
 from webdemo.inference.methods import failed, method, register_settings
@@ -81,9 +82,9 @@ def test_released_files_become_a_motion_in_the_shell(
     # As a partner of a given person, who stays as they are.
     actor = read(out).a  # type: ignore[union-attr]
     request = ReactRequest(actor=actor, model="my-run", steps=4, role="b", prompt="They wave.")
-    duet = result_of(Engine(), request).duets[0]
+    duet = run(Engine(), request).duets[0]
     assert np.array_equal(duet.b.positions, actor.positions)  # type: ignore[union-attr]
-    assert any("section 5.4" in note for note in result_of(Engine(), request).notes)
+    assert any("section 5.4" in note for note in run(Engine(), request).notes)
     assert request.damping == 0.0
 
 
@@ -156,7 +157,7 @@ def test_a_model_that_does_not_fit_is_refused(settings: Path, files: Path, monke
     use(settings, TABLE, files)
     monkeypatch.setattr(released, "free_memory", lambda: 1e6)
     with pytest.raises(InputError, match=r"needs about .* GB of memory and 0\.0 GB are free"):
-        result_of(Engine(), GenerateRequest(prompt="Two people wave.", model="my-run"))
+        run(Engine(), GenerateRequest(prompt="Two people wave.", model="my-run"))
     monkeypatch.setattr("webdemo.inference.own.released.total_memory", lambda: 1e6)
     register_settings()
     assert "choose a smaller model" in why("my-run")

@@ -11,13 +11,8 @@ import pytest
 from models.regennet.released import decode, encode
 from motion import Clip, Duet, InputError
 from motion.formats import read
-from tests.inference.own.released_files import (
-    result_of,
-    write_bigraphdiff,
-    write_interformer,
-    write_regennet,
-    write_vocabulary,
-)
+from tests.inference.own.released_files import write_bigraphdiff, write_interformer, write_regennet, write_vocabulary
+from tests.inference.runs import run
 from webdemo.inference import Engine, GenerateRequest, ReactRequest
 from webdemo.inference.methods import failed, method, register_settings, variants
 from webdemo.inference.own import entries
@@ -82,9 +77,9 @@ def test_regennet_reacts_whole_and_frame_by_frame(engine: Engine, actor: Clip) -
         "ReGenNet (authors), whole motion",
         "ReGenNet (authors), frame by frame",
     ]
-    whole = result_of(engine, ReactRequest(actor=actor, model="online", steps=2))
-    live = result_of(engine, ReactRequest(actor=actor, model="online", steps=2, mode="online", cleanup=False))
-    plain = result_of(engine, ReactRequest(actor=actor, model="online", steps=2, cleanup=False))
+    whole = run(engine, ReactRequest(actor=actor, model="online", steps=2))
+    live = run(engine, ReactRequest(actor=actor, model="online", steps=2, mode="online", cleanup=False))
+    plain = run(engine, ReactRequest(actor=actor, model="online", steps=2, cleanup=False))
     assert np.array_equal(whole.duets[0].a.positions, actor.positions)  # type: ignore[union-attr]
     assert np.abs(live.duets[0].b.positions - plain.duets[0].b.positions).max() < 1e-3  # type: ignore[union-attr]
     assert "SMPL-X" in whole.notes[0]
@@ -95,7 +90,7 @@ def test_regennets_actions_are_words(engine: Engine, actor: Clip) -> None:
 
     def answer(prompt: str, guidance: float = 1.0) -> np.ndarray:
         request = ReactRequest(actor=actor, model="whole", steps=2, prompt=prompt, guidance=guidance)
-        return result_of(engine, request).duets[0].positions
+        return run(engine, request).duets[0].positions
 
     assert np.array_equal(answer("Wave"), answer("1")) and not np.array_equal(answer("wave"), answer("kick"))
     assert not np.array_equal(answer("wave"), answer("wave", guidance=3.0))
@@ -104,24 +99,24 @@ def test_regennets_actions_are_words(engine: Engine, actor: Clip) -> None:
 
 
 def test_interformer_answers_pose_after_pose(engine: Engine, actor: Clip) -> None:
-    result = result_of(engine, ReactRequest(actor=actor, model="former", samples=2))
+    result = run(engine, ReactRequest(actor=actor, model="former", samples=2))
     assert len(result.duets) == 2 and result.duets[0].num_frames == 45
     for said in ("network saw 15", "all samples"):
         assert any(said in note for note in result.notes)
     long = Clip(np.concatenate([actor.positions] * 3), actor.fps)  # longer than the table of positions
-    assert result_of(engine, ReactRequest(actor=long, model="former")).duets[0].num_frames == 135
+    assert run(engine, ReactRequest(actor=long, model="former")).duets[0].num_frames == 135
 
 
 def test_bigraphdiff_makes_two_people_from_words(engine: Engine) -> None:
     request = GenerateRequest(prompt="two wave", model="graph", seconds=1.5, steps=4)
-    result = result_of(engine, request)
+    result = run(engine, request)
     duet = result.duets[0]
     assert isinstance(duet, Duet) and duet.positions.shape == (2, 45, 22, 3)
     assert any("25 joints" in note and "cm from the network" in note for note in result.notes)
-    other = result_of(engine, GenerateRequest(prompt="peo", model="graph", seconds=1.5, steps=4)).duets[0]
+    other = run(engine, GenerateRequest(prompt="peo", model="graph", seconds=1.5, steps=4)).duets[0]
     assert isinstance(other, Duet) and not np.array_equal(duet.positions, other.positions)
     with pytest.raises(InputError, match="at most 3 seconds"):
-        result_of(engine, GenerateRequest(prompt="two wave", model="graph", seconds=4, steps=4))
+        run(engine, GenerateRequest(prompt="two wave", model="graph", seconds=4, steps=4))
 
 
 def test_a_checkpoint_of_another_network_is_named(engine: Engine) -> None:

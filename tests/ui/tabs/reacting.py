@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
-
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
-
 
 from tests.ui.tab_events import changes, taken
 from webdemo.ui.tabs.react import ReactTab

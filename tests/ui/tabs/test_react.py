@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import gradio as gr
 import numpy as np
 import pytest
-
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
-
-import gradio as gr
 
 from motion.skeleton import LAYOUTS
 from tests.motion.formats.characters import glb_motion
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, taken
+from webdemo.inference.methods import variants
+from webdemo.inference.requests import ReactRequest
+from webdemo.ui.components.actors import react_choices
+from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.tabs.react import ReactTab
 
 from .reacting import run, upload
@@ -179,3 +180,52 @@ def test_the_order_of_fifteen_joints_is_found_and_can_be_set(tab: ReactTab, tmp_
     assert "in the order of K3HI" in last["found"]
     *_, again = [taken(tab.actor, u) for u in tab.actor.read_again(last["state"], "auto", None, "sbu15", None)]
     assert "in the order of SBU" in again["found"]
+
+
+def test_an_opened_run_brings_back_its_file_its_person_and_its_part(tab: ReactTab) -> None:
+    pair = walking(3.0)
+    request = ReactRequest(actor=replace(pair.b.cut(15, 75), name="sub/ject 1.bvh"), steps=1)
+    *_, result = tab.page.engine.run(request)
+    entry = Entry(id="x", kind="react", title="t", state="done", request=request.to_dict())
+    kept = Kept(controls={"person": "b", "start": 0.5, "end": 2.5}, people=pair.people)
+    found = tab.opened(Opened(entry=entry, result=result, kept=kept))
+    assert found[tab.actor.person] == gr.update(choices=BOTH, visible=True, value="b")
+    assert (found[tab.actor.begin]["value"], found[tab.actor.end]["value"]) == (0.5, 2.5)
+    assert found[tab.actor.file] is None and found[tab.actor.state].people == pair.people
+    by_link = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={"person": "x"})))
+    assert by_link[tab.actor.file] is None and by_link[tab.actor.begin]["value"] == 0.0
+    wrong = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, controls={"person": ["b"]})))
+    assert wrong[tab.actor.person]["value"] == "a", "a workspace made by hand"
+
+
+@pytest.mark.parametrize(
+    ("method", "model", "mode", "steps"),
+    [
+        ("intergen", "intergen", "offline", 8),
+        ("regennet", "regennet", "offline", 5),
+        ("regennet-online", "regennet", "online", 5),
+    ],
+)
+def test_a_method_is_a_model_and_a_mode(
+    tab: ReactTab, walker: Path, method: str, model: str, mode: str, steps: int
+) -> None:
+    source = upload(tab, walker)[-1]["state"]
+    run(tab, source, method=method)
+    asked = tab.page.engine.requests[-1]
+    assert (asked.model, asked.mode) == (model, mode)
+    role, steps_slider, pace, _, damping, *_ = tab.fit_method(method)
+    assert steps_slider["value"] == steps and pace["interactive"] == steps_slider["interactive"]
+    assert role["interactive"] is (model == "intergen")
+    assert damping["interactive"] is (mode == "offline")
+
+
+def test_a_method_streams_where_it_can_answer_pose_by_pose(tab: ReactTab) -> None:
+    streams = {key for _, key in react_choices() if tab.fit_method(key)[-1]["visible"]}
+    assert streams == {"automatic", "regennet", "regennet-online", "agent"}
+
+
+def test_the_steps_of_every_method_can_be_set(tab: ReactTab) -> None:
+    """A value outside of the slider's range is refused by the page before the job begins."""
+    for method in variants("react"):
+        steps = tab.fit_method(method)[1]
+        assert tab.sampling.steps.minimum <= steps["value"] <= tab.sampling.steps.maximum, method
