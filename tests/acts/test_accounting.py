@@ -9,7 +9,7 @@ from acts.accounting import account
 from acts.checking import checked
 from acts.qualifiers import plain, qualifiers
 from tests.motion.metrics.test_sentence_shapes import duet, put
-from webdemo.inference.engine import note
+from webdemo.inference.verdicts import note
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,10 @@ from acts import Act, Plan, Relation
 from motion import Duet, InputError
 from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
-from webdemo.inference.engine import judged, note, run_tries
 from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.story import Beat
+from webdemo.inference.tries import run_tries
+from webdemo.inference.verdicts import judged, note
 
 SENTENCE = "A raises the left arm and turns around."
 

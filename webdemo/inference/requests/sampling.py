@@ -44,7 +44,7 @@ class SamplingRequest:
         model: the name of a generator in the registry.
         cleanup: project the result onto constant bones and planted feet.
         tries: of a sentence or a story, the seeds from ``seed`` on that are tried until a motion shows all that is
-            said; the best is kept (:func:`.engine.run_tries`).
+            said; the best is kept (:func:`.tries.run_tries`).
         plan: of the words, or of an earlier result of this request; by default the words are read when the run begins.
     """
 
