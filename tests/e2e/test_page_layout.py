@@ -69,6 +69,21 @@ def test_the_player_is_under_ten_tabs_from_the_prompt(page: Page) -> None:
     raise AssertionError("The settings come first.")
 
 
+def test_the_button_and_the_whole_stage_are_in_view_together_on_a_small_laptop(page: Page) -> None:
+    """It comes before the tests that make a motion on this page: there are more buttons then."""
+    page.set_viewport_size({"width": 1024, "height": 700})
+    for tab in ("Generate", "React", "Predict"):
+        page.get_by_role("tab", name=tab).click()
+        prefix = "" if tab == "Generate" else f"{tab.lower()}-"
+        page.locator(f"#{prefix}player .pdd-stage").wait_for()
+        for part in (f"button#{prefix}generate", f"#{prefix}player .pdd"):
+            box = page.locator(part).bounding_box()
+            assert box and box["y"] >= 0 and box["y"] + box["height"] <= 700, part
+        assert page.evaluate("[...document.querySelectorAll('.pdd')].every((e) => !((e.scrollLeft = 9), e.scrollLeft))")
+        player = page.locator(f"#{prefix}player .pdd").bounding_box()
+        assert player and player["width"] > 600 and player["height"] > 600
+
+
 @pytest.mark.parametrize("width", [390, 1440])
 def test_what_is_pressed_is_24_pixels_high_and_wide(page: Page, width: int) -> None:
     page.set_viewport_size({"width": width, "height": 900})
@@ -132,17 +147,3 @@ def against_wcag(axe: Any, page: Page, where: str) -> list[str]:
             found += [f"{where}: {broken['help']}: {node['html'][:120]}" for node in broken["nodes"]]
     page.evaluate("document.body.classList.remove('dark')")
     return found
-
-
-def test_the_button_and_the_whole_stage_are_in_view_together_on_a_small_laptop(page: Page) -> None:
-    page.set_viewport_size({"width": 1024, "height": 700})
-    for tab in ("Generate", "React", "Predict"):
-        page.get_by_role("tab", name=tab).click()
-        prefix = "" if tab == "Generate" else f"{tab.lower()}-"
-        page.locator(f"#{prefix}player .pdd-stage").wait_for()
-        for part in (f"button#{prefix}generate", f"#{prefix}player .pdd"):
-            box = page.locator(part).bounding_box()
-            assert box and box["y"] >= 0 and box["y"] + box["height"] <= 700, part
-        assert page.evaluate("[...document.querySelectorAll('.pdd')].every((e) => !((e.scrollLeft = 9), e.scrollLeft))")
-        player = page.locator(f"#{prefix}player .pdd").bounding_box()
-        assert player and player["width"] > 600 and player["height"] > 600

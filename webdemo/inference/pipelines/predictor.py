@@ -66,7 +66,7 @@ def fitted_to_past(past: Array, future: Array) -> Array:
     largest = mean_steps(past).max(axis=1)
     asked = largest
     for _ in range(_SEAM_TRIES):
-        made = above_floor(past, with_bones_of(past[:, -1], without_jump(past, future, asked)))
+        made = no_lower_than(past, with_bones_of(past[:, -1], without_jump(past, future, asked)))
         step = mean_step(past[:, -1], made[:, 0])
         if np.all(step <= largest):
             break
@@ -81,7 +81,7 @@ def with_bones_of(pose: Array, positions: Array) -> Array:
     return chained(positions[:, :, 0], lengths * unit(bone_vectors(positions)))
 
 
-def above_floor(past: Array, future: Array) -> Array:
+def no_lower_than(past: Array, future: Array) -> Array:
     """Raises the frames of a future that would sink below the lowest point of the past."""
     floor = past[..., 1].min(axis=(1, 2))[:, None]
     lift = np.maximum(floor - future[..., 1].min(axis=-1), 0.0)
@@ -150,7 +150,7 @@ class PredictorPipeline:
             if not still.all():
                 future = self._next(whole[:, :kept])
                 future = with_bones_of(past[:, -1], faded(whole[:, kept - 1 :], future))
-                future = above_floor(past, future)
+                future = no_lower_than(past, future)
             future = np.where(still[:, None, None, None], held, future)
             whole = np.concatenate([whole[:, :kept], future], axis=1)
             kept = whole.shape[1] - _OVERLAP
