@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import runpy
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +11,7 @@ from motion.body import load_body, skin
 from motion.hands import angles
 from motion.looks import UNSAID
 
+from .harness import duet_with_a_child, duet_with_things, people
 from .playing import hook, pause, press, stage_pixels, until
 
 pytestmark = pytest.mark.e2e
@@ -40,8 +39,7 @@ def test_bodies_stand_where_python_puts_them(player, button, width):
     pause(page)
     page.locator(".pdd-range").fill("93")
     until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
-    made = {"load": "walking_duet", "child": "duet_with_a_child"}[button]
-    duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))[made]()
+    duet = {"load": people, "child": duet_with_a_child}[button]()
     assert (duet.looks == UNSAID) == (button == "load")
     for person, name in enumerate(duet.looks):
         body = load_body(name, small=width < 700)
@@ -173,7 +171,7 @@ def test_things_and_hands_are_where_python_puts_them(player):
     pause(page)
     page.locator(".pdd-range").fill("93")
     until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
-    duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))["duet_with_things"]()
+    duet = duet_with_things()
 
     def drawn(figure: str) -> np.ndarray:
         """(vertices, 3) in the world's axes; the scene's are z, x, y."""

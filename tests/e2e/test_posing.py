@@ -26,6 +26,8 @@ DIRECT = """() => {
     });
 }"""
 WRIST, ANKLE, HEAD = (SMPL22.index(name) for name in ("right_wrist", "left_ankle", "head"))
+FREE = SMPL22.index("left_wrist")
+"""The hand that no other's lies over: the right ones shake each other."""
 
 
 @pytest.fixture
@@ -54,7 +56,7 @@ def test_bones_keep_their_lengths_and_joints_go_where_they_reach(still: Any) -> 
             target = pose[joint] + reach * way / np.linalg.norm(way)
             pulled = np.array(still.evaluate(PULL, [pose.tolist(), joint, target.tolist()]))
             np.testing.assert_allclose(bone_lengths(pulled), bone_lengths(pose), atol=1e-9)
-            assert pulled[:, 2].min() > min(pose[:, 2].min(), 0.0), "nobody is pushed through the floor"
+            assert pulled[:, 2].min() > min(pose[:, 2].min(), 0.0) - 1e-9, "nobody is pushed through the floor"
             if reach == 0:
                 np.testing.assert_allclose(pulled, pose, atol=2e-3)
     # A hand that is bent back to the chest is reached exactly; hips that sink leave the feet where they stand.
@@ -75,7 +77,7 @@ def test_bones_keep_their_lengths_and_joints_go_where_they_reach(still: Any) -> 
 def test_a_hand_is_dragged_given_up_and_kept(still: Any) -> None:
     before = positions(still)
     still.locator("[data-act=pose]").click()
-    box = settled_box(still.locator(f'.pdd-handle[data-person="0"][data-joint="{WRIST}"]'))
+    box = settled_box(still.locator(f'.pdd-handle[data-person="0"][data-joint="{FREE}"]'))
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
     def drag() -> None:
@@ -92,7 +94,7 @@ def test_a_hand_is_dragged_given_up_and_kept(still: Any) -> None:
     drag()
     still.mouse.up()
     dragged = positions(still)
-    assert np.linalg.norm(dragged[WRIST] - before[WRIST]) > 0.1
+    assert np.linalg.norm(dragged[FREE] - before[FREE]) > 0.1
     np.testing.assert_allclose(
         positions(still, 1),
         np.array(still.evaluate("window.__pasdedeux.player.everybody(60)[1].map(([z, x, y]) => [x, y, z])")),
