@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from motion import InputError
 
-from .captions import VERB, caption_of, usual_limb, with_thing
+from .captions import VERB, caption_of, gerund, past, singular, usual_limb, with_thing
 from .lexicon import Entry, Lexicon, kind_of, lexicon
 from .plan import ON_TIPTOE, Act, Plan, merged
 from .reading import wordnet
 from .reading.parses import Parse, parses
 from .reading.people import A_NAME, ANYONE, B_NAME
 from .reading.spelling import Speller
-from .reading.syntax import is_likeness, seems
+from .reading.syntax import has, is_likeness, seems
 from .reading.vocabulary import FORMATION, closed, is_act, vocabulary
 from .shapes import Gesture, Go, Strike, Touch
 
@@ -95,7 +95,7 @@ def _account(plan: Plan, known: Lexicon) -> Account:
                     verb = next((t for t in within if t.pos_ == "VERB"), within[0])
                     taken.append((spans[verb.i][0], own.stop))
                     others[act.id] = plan.sentence[spans[verb.i][0] : own.stop].strip(" ,;.")
-        left = [(i, j) for i, j in left if not any(i < stop and start < j for start, stop in taken)]
+        left = [(i, j) for i, j in left if not any(start <= i and j <= stop for start, stop in taken)]
         left += [each for each in parsed.text.left_out() if not any(i < each[1] and each[0] < j for i, j in whole)]
         for token in parsed.doc:
             start, stop = spans[token.i]
@@ -111,7 +111,7 @@ def _account(plan: Plan, known: Lexicon) -> Account:
                 unsaid.setdefault(by, []).append(parsed.text.span(*_phrase(token)))
     left = [(i, j) for i, j in left if plan.sentence[i:j].strip().upper() not in ("A", "B")]
     named = {
-        of: _quoted([(i, j) for i, j in each if not any(i < y and x < j for x, y in left)], plan.sentence)
+        of: _quoted([(i, j) for i, j in each if not any(x <= i and j <= y for x, y in left)], plan.sentence)
         for of, each in unsaid.items()
     }
     return Account(_quoted(left, plan.sentence), named, others, frozenset(towards))
@@ -138,7 +138,7 @@ def _is_named(within: list[Token], act: Act, entry: Entry, plan: Plan, parsed: P
     handled = any(verb in closed("handles") and words.named_part(noun) for verb, noun in _HANDLED.findall(caption))
     several = VERB.findall(caption)
     said_verbs = [_lemma(t, parsed) for t in within if t.pos_ in ("VERB", "NOUN")]
-    if (handled and not parts and not act.part) or not set(entry.loose).isdisjoint(said_verbs):
+    if handled and not parts and not act.part:
         return False  # "supports her" is not "puts both hands on B's shoulders"
     if len(several) > 1 and not all(
         verb in said_verbs or any(_alike(own, (verb,), ()) for own in said_verbs) for verb in several
@@ -153,11 +153,11 @@ def _is_named(within: list[Token], act: Act, entry: Entry, plan: Plan, parsed: P
             continue
         if lemma in captions and lemma not in words.light and lemma not in closed("states"):
             return True
-        if _alike(lemma, verbs, ()) or (token.pos_ == "VERB" and _is_kind_of(lemma, verbs)):
+        if _alike(lemma, verbs, ()):
             return True
         if lemma in words.gaits and not (words.verbs["goes"] | words.gaits.keys()).isdisjoint(verbs):
             return True  # and not "runs into B", who is bumped into
-    own = [t for t in within if t.pos_ == "VERB" and _counts(t, parsed) and _lemma(t, parsed) not in words.light]
+    own = [t for t in within if t.pos_ == "VERB" and _counts(t, parsed) and not _is_empty(t, parsed)]
     empty = not any(_counts(t, parsed) for t in within)  # "starts to fight"
     return len(shared) >= 2 or (not own and (bool(shared) or empty))
 
@@ -168,14 +168,15 @@ def shown_caption(act: Act, entry: Entry, said: str = "") -> str:
     It is one with the act's direction, or its own verb, where one has, to the other where the act is, and of those
     the one that adds least to the words that are ``said``.
     """
-    own, spoken, usual = f"[{act.act.split('-')[0]}]", frozenset(_WORD.findall(said.lower())), caption_of(act, entry)
+    own, spoken, usual = act.act.split("-")[0], frozenset(_WORD.findall(said.lower())), caption_of(act, entry)
     both = len(act.agents) == 2 and "{b}" in usual
     usual = next((text for text in entry.caption if act.thing and "{thing}" in text), usual)
     usual = next((text for text in entry.caption if both and "{thing}" not in usual and "{a+b}" in text), usual)
     named = act.patient is not None or bool(_EACH_OTHER.search(said))
     slots = (_slots(usual), _slots(usual) | {"{b}"} if named else _slots(usual) - {"{b}"})
-    alike = [text for text in entry.caption if own in text and _slots(text) in slots]
-    alike = [text for text in alike if act.thing or not text.endswith("something")]
+    alike = [text for text in entry.caption if f"[{own}]" in text or _says(text, spoken)]
+    things = act.thing and kind_of(act.thing)
+    alike = [text for text in alike if _slots(text) in slots and (things or "something" not in text.split())]
 
     def unlike(text: str) -> tuple[bool | int, ...]:
         words = said_words((text,)) - closed("plain")
@@ -185,10 +186,16 @@ def shown_caption(act: Act, entry: Entry, said: str = "") -> str:
         more = {
             word for word in words - spoken if said and not (act.thing and kind_of(word))
         }  # which the thing replaces
-        return other_part, alone, len(more), text != usual
+        return other_part, alone, not _says(text, spoken), len(more), text != usual
 
     alike.sort(key=unlike)
     return next((text for text in alike if act.direction in text.split()), next(iter(alike), usual))
+
+
+def _says(caption: str, spoken: Set[str]) -> bool:
+    """True for a caption one of whose verbs is said, and says more than that something is done."""
+    own = (verb for verb in VERB.findall(caption) if verb not in vocabulary().light and verb not in closed("states"))
+    return any(not spoken.isdisjoint((verb, singular(verb), gerund(verb), past(verb))) for verb in own)
 
 
 def _is_other_thing(act: Act, entry: Entry, caption: str) -> bool:
@@ -207,17 +214,23 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
     returns = token.lower_ == "back" and token.dep_ in ("conj", "pobj")  # "to the wall and back", "to the back"
     if _is_place(token) or _is_target(token) or token.lower_ == "half" or returns or _joined(token, parsed):
         return True
-    if token.pos_ not in _CONTENT or not token.text[0].isalnum() or (len(token.text) < 2 and not token.text.isdigit()):
+    about = token.lower_ in closed("about") and not token.n_rights
+    if (
+        (token.pos_ not in _CONTENT and not about)
+        or not token.text[0].isalnum()
+        or (len(token.text) < 2 and not token.text.isdigit())
+    ):
         return False
     if token.text in (A_NAME, B_NAME) or lemma == "let":
         return False
     if token.pos_ != "VERB" and {lemma, token.lower_} & (closed("fillers") | closed("scenery")):
         return False
-    about = lemma in closed("states") or any(lemma in words.verbs[kind] for kind in _KINDS)
-    if token.pos_ in ("VERB", "AUX") and (about or seems(token)):
+    about = has(token, "xcomp", "ccomp", "advcl") or any(c.dep_ == "dobj" and is_act(c.lemma_) for c in token.children)
+    about = about and any(lemma in words.verbs[kind] for kind in _KINDS)
+    if token.pos_ in ("VERB", "AUX") and (about or lemma in closed("states") or seems(token)):
         return False
-    if token.dep_ in ("aux", "auxpass", "neg", "mark"):
-        return False
+    if token.dep_ in ("aux", "auxpass", "neg", "mark") or (token.dep_ == "advmod" and token.head.pos_ == "NUM"):
+        return False  # "about three metres": what is measured is only about so much
     named = {words.directions.get(child.lower_) for child in token.children}
     if lemma == "side" and not closed("turns").isdisjoint(named):  # "to the left side"
         return False
@@ -274,11 +287,14 @@ def _is_said(token: Token, act: Act, entry: Entry, plan: Plan, parsed: Parse) ->
     loose = token.pos_ in ("ADV", "ADP") and not _is_target(token)  # "dances around" is more than "dances"
     said = said_words((caption,) if loose else entry.caption) | set(" ".join(act.manner).split())
     near = (closed(name) for name in ("next to", "past") if text in closed(name))
-    if forms & said or any(said_words(entry.caption) & each for each in near):
+    around = text in closed("about") and not closed("about").isdisjoint(said)
+    if forms & said or around or any(said_words(entry.caption) & each for each in near):
+        return True
+    if _is_empty(token, parsed) and _is_read(token, act, entry, parsed):
         return True
     verbs = _verbs(entry.caption)
     puts = token.pos_ == "VERB" and lemma in closed("puts") and not closed("puts").isdisjoint(verbs)
-    if puts or (token.pos_ in ("VERB", "NOUN") and _alike(lemma, verbs, entry.synsets)):
+    if puts or (token.pos_ in ("VERB", "NOUN") and _alike(lemma, verbs, ())):
         return True
     if act.thing and forms & set(act.thing.split()):  # "plays the violin" is not "plays the guitar"
         shown = with_thing(act, caption)[1]
@@ -303,7 +319,8 @@ def _is_said(token: Token, act: Act, entry: Entry, plan: Plan, parsed: Parse) ->
         of = _lemma(token.head, parsed)
         measured = (act.seconds is not None and of in words.seconds) or (act.distance and of in words.metres)
         return bool(measured) or text == str(act.times) or (text in words.numbers and words.numbers[text] == act.times)
-    return (lemma in words.metres and act.distance is not None) or (lemma in words.seconds and act.seconds is not None)
+    far = act.distance is not None and (lemma in words.metres or text in closed("how far"))
+    return far or (lemma in words.seconds and act.seconds is not None)
 
 
 def _is_read(token: Token, act: Act, entry: Entry, parsed: Parse) -> bool:
@@ -341,14 +358,13 @@ def _alike(lemma: str, verbs: tuple[str, ...], synsets: tuple[str, ...]) -> bool
     return bool(set(wordnet.senses(lemma)[:2]) & theirs)
 
 
-def _is_kind_of(lemma: str, verbs: tuple[str, ...]) -> bool:
-    """True for a verb whose usual meaning is a way to do what one of these does: "stroke", of "touch"."""
-    above = {up for sense in wordnet.senses(lemma)[:2] for up in wordnet.above(sense)}
-    return any(above & set(wordnet.senses(verb)[:2]) for verb in verbs)
-
-
 def _lemma(token: Token, parsed: Parse) -> str:
     return str(parsed.lemmas.get(token.i, token.lemma_.lower()))
+
+
+def _is_empty(token: Token, parsed: Parse) -> bool:
+    """True for a verb that means what its object names: "takes a bow", but not "takes off"."""
+    return token.pos_ == "VERB" and _lemma(token, parsed) in vocabulary().light and not has(token, "prt")
 
 
 def _joined(token: Token, parsed: Parse) -> str:

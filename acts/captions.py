@@ -106,8 +106,8 @@ def _by_hand(act: Act, caption: str) -> str:
 
 
 def usual_limb(caption: str) -> str:
-    """The limb by which an act is done where the words name none: the foot that kicks, else the hand."""
-    return "foot" if _BY_FOOT.search(caption) else "hand"
+    """The limb by which an act is done where the words name none: the foot that kicks, the knee, else the hand."""
+    return "foot" if _BY_FOOT.search(caption) else "knee" if "[kneel]" in caption else "hand"
 
 
 def by_limb(act: Act, caption: str) -> str:

@@ -24,7 +24,7 @@ from .accounting import account, shown_caption
 from .captions import VERB, by_limb, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import ON_TIPTOE, Act, Plan
-from .qualifiers import body_part, plain, qualifiers, travels
+from .qualifiers import body_part, plain, qualifiers, side_of, travels
 from .reading.vocabulary import closed
 from .shapes import Lift
 
@@ -34,8 +34,6 @@ ONLY = {"tried": "only tried", "offered": "only offered", "pretended": "only pre
 NO_RULE = "nothing measures it"
 """The reason where an entry has no rule."""
 
-_OF_THE_CLOCK = {"clockwise": "right", "counterclockwise": "left"}
-"""Directions as seen from above, and those that a rule asks for."""
 HELD = 0.4
 """The part of a motion during which a posture is held, where the words say nothing."""
 UNSAID: Mapping[str, str | float] = {"side": "any", "part": "body", "way": "any", "n": 1, "several": 2, "metres": 1.2}
@@ -274,9 +272,7 @@ def rules_of(act: Act, entry: Entry, who: str, **said: str | float) -> list[str]
     whom = other_of(who)
     part = body_part(act) or "body"
     part = f"{act.part_side} {part}" if act.part_side and has_sides(part) else part
-    way = _OF_THE_CLOCK.get(act.direction or "", act.direction)
-    way = way if way in ("forward", "back", "left", "right") else "any"
-    said |= {"side": act.side or "any", "part": part, "way": way}
+    said |= {"side": act.side or "any", "part": part, "way": side_of(act)}
     said |= {"n": act.times, "several": act.times} if act.times else {}
     said |= {"metres": 0.7 * act.distance} if act.distance else {}
     return [cast(rule, who, whom, counted=bool(act.times), **said) for rule in entry.rule]

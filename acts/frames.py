@@ -21,7 +21,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from acts.plan import other_of
+from acts.plan import Span, other_of
 from motion import InputError
 
 _PREPOSITIONS = (
@@ -80,6 +80,7 @@ class Event:
         joint: how it is joined to event ``beside``, as in :class:`acts.plan.Relation`.
         first, last: character offsets in the text that was parsed.
         goes: its verb means that somebody moves, so that a particle may just say where to, as in "jumps out".
+        said: where in the text the words stand that say it, if that is only a part of its verb's clause.
         adverbs, seconds, times, distance, direction, side: modifiers.
     """
 
@@ -105,6 +106,7 @@ class Event:
     direction: str | None = None
     side: str | None = None
     goes: bool = False
+    said: Span | None = None
     noun: Event | None = None
     """The same with the verb that its noun stands for: "gives a hug" as "hugs"."""
 

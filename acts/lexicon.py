@@ -52,7 +52,6 @@ class Entry(BaseModel):
     Attributes:
         frames: how it is said; see :mod:`acts.frames`.
         synsets: WordNet senses whose other verbs, and those below them, may stand in its frames' place.
-        loose: verbs of its frames that mean more than its captions say, as "stroke" of a touch: they are told as read.
         caption: the network's words, as ``{a} [pat] {b} on the {part}``; see :func:`acts.captions.worded`. The first is
             used, the others are paraphrases of it.
         chip: the act in a few words beside its people, as a caption, where neither caption nor name says it well.
@@ -80,7 +79,6 @@ class Entry(BaseModel):
 
     frames: Annotated[tuple[Sentence, ...], Field(min_length=1, max_length=60)]
     synsets: Annotated[tuple[str, ...], Field(max_length=20)] = ()
-    loose: Annotated[tuple[str, ...], Field(max_length=20)] = ()
     caption: Annotated[tuple[Sentence, ...], Field(max_length=12)] = ()
     chip: Sentence | None = None
     seconds: Annotated[float, Field(gt=0, le=60)] = 3.0

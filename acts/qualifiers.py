@@ -15,11 +15,13 @@ from .captions import plural, usual_limb
 from .lexicon import Entry
 from .plan import FROM_BEHIND, ON_TIPTOE, Act
 from .reading.vocabulary import closed, vocabulary
-from .shapes import Figure, Gesture, Go, Touch
+from .shapes import Figure, Gesture, Go, Touch, Turn
 
 _BOTH = re.compile(r"\bboth (?:\w+ )?(hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE)
 
 _OF_BOTH = "claps palms_strike both_hands_on hands_high hands_ahead hands_on_hips arms_wide arms_crossed arms_down"
+_OF_THE_CLOCK = {"clockwise": "right", "counterclockwise": "left"}
+"""Directions as seen from above, and those that a rule asks for."""
 _TWO_HANDED = frozenset((*_OF_BOTH.split(), "holds_in_front"))
 """Predicates that hold of both hands or arms at once."""
 
@@ -43,7 +45,7 @@ def qualifiers(
     words = said_words((caption,))
     goes = next((shape for shape in entry.stage if isinstance(shape, Go)), None)
     if act.times is not None and not (names & {"n", "several"} or (goes and act.distance is not None)):
-        yield "how often", ""
+        yield "how often", _so_often(act, entry, who)
     if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
         yield "which side", ""
     if act.part_side and not ("part" in names and has_sides(body_part(act))):
@@ -52,20 +54,20 @@ def qualifiers(
     if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
     leaves = names & {"backs", "turns_away"} and act.direction in ("away", "back")  # "backs away"
-    leaves = leaves or (act.direction == "back" and not goes and "{b}" in caption)  # "hits back": in return
-    named = {vocabulary().directions.get(word) for word in said_words((*entry.frames, *entry.caption))}
-    own = act.direction in named and act.direction in ("up", "down", "out")
+    known = said_words((*entry.frames, *entry.caption))
+    ways = {word for word in said_words((said,)) if vocabulary().directions.get(word) == act.direction}
+    leaves = leaves or ("back" in ways and not goes and "{b}" in caption)  # "hits back": in return
+    named = {word for word in known if vocabulary().directions.get(word) == act.direction}
+    own = bool(named & (ways or named)) and act.direction in ("up", "down", "out")
     own = own or (act.direction == "away" and re.search(r"\boff\b", said) is not None)  # "takes off his shoes"
     if act.direction is not None and act.direction not in words and "way" not in names and not (own or leaves):
         yield "which way", _goes_way(act, who) if travels(entry) else ""
     if abs(act.speed - 1.0) > 0.3:  # who strolls walks
         yield "how fast", _at_speed(act.speed, goes, who, mask) if goes else ""
     if act.distance is not None:
-        near = f"happens(near({1.3 * act.distance + 0.2:.2f}), 1)" if "metres" in names else ""
-        way = f"happens(goes_metres({who}, {0.65 * act.distance:.2f}, {1.5 * act.distance + 0.3:.2f}))"
-        if goes and goes.way == "around":  # so far from each other
-            way = f"happens(both(near({1.2 * act.distance + 0.1:.2f}), without(near({0.8 * act.distance:.2f}))), 1)"
-        yield "how far", way if goes else near
+        least, most = 0.65 * act.distance, 1.3 * act.distance + 0.3
+        between = f"happens(both(near({most:.2f}), apart({least:.2f})), 0.5)"
+        yield "how far", f"happens(goes_metres({who}, {least:.2f}, {most:.2f}))" if is_length(goes) else between
     if act.seconds is not None:
         yield "how long", ""
     if to_other and entry.to == "other" and mask and all(isinstance(shape, Gesture) for shape in entry.stage):
@@ -81,6 +83,17 @@ def qualifiers(
     seen = {"part", vocabulary().part(act.part or "")} & names | {act.part, plural(act.part or "")} & words
     if act.part and not (own or seen or "{part}" in caption or "{limb}" in caption):
         yield "where on the body", ""
+
+
+def is_length(goes: Go | None) -> bool:
+    """True for a way that is so long; the two who take another, or none, are so far from each other."""
+    return goes is not None and goes.way != "around"
+
+
+def side_of(act: Act) -> str:
+    """Where an act goes, as rules name it; "any" where its words leave that open."""
+    way = _OF_THE_CLOCK.get(act.direction or "", act.direction)
+    return way if way in ("forward", "back", "left", "right") else "any"
 
 
 def travels(entry: Entry) -> bool:
@@ -114,6 +127,15 @@ def _on_side(act: Act, entry: Entry, who: str) -> str:
 def body_part(act: Act) -> str:
     """The part of the body that an act names, as rules name it; "" where it names none."""
     return next((name for name in (act.part or "", vocabulary().part(act.part or "")) if name in BODY), "")
+
+
+def _so_often(act: Act, entry: Entry, who: str) -> str:
+    """Whole turns around the other, or around oneself, where it is one of these; else ""."""
+    times, way = act.times or 1, side_of(act)
+    if any(isinstance(shape, Go) and shape.way == "around" for shape in entry.stage):
+        return f"happens(orbits({who}, {360 * times - 90}, {way!r}))"
+    turns = any(isinstance(shape, Turn) and shape.way == "around" for shape in entry.stage)
+    return f"happens(revolves({who}, {times}, {way!r}))" * turns
 
 
 def _goes_way(act: Act, who: str) -> str:

@@ -75,7 +75,8 @@ class Arguments:
             elif child.dep_ in ("prep", "dative") or (child.dep_ == "prt" and has(child, "pobj")):
                 self._preposition(child, who, event)
             elif child.dep_ in ("ccomp", "xcomp", "advcl", "oprd") and (
-                child.pos_ in ("ADP", "ADV") or (child.pos_ == "ADJ" and child.left_edge.i == token.i + 1)
+                (child.pos_ in ("ADP", "ADV") and not has(child, "mark"))
+                or (child.pos_ == "ADJ" and child.left_edge.i == token.i + 1)
             ):
                 for noun in child.children:  # "lifts the second person up" and "shakes him awake", as a clause
                     if noun.dep_ in ("nsubj", "pobj") and event.object is None:
@@ -142,6 +143,8 @@ class Arguments:
         if within is not None and (moved or way in closed("of the clock")):
             event.words += [token.lower_] if moved else []
             self._direction(token.lower_, event)
+            for often in (c for c in token.children if c.lemma_ == "time" or c.lower_ in closed("so often")):
+                self._modifier(often, event)
             token = within  # "in a circle clockwise", "around the other clockwise", "waves the hand sideways"
         if (part := self._named_by(token)) is not None:
             token = part
@@ -200,8 +203,10 @@ class Arguments:
             self.seen.add(child.i)
             if child.dep_ == "pcomp":
                 taken = True
-                if child.pos_ in ("ADV", "ADP"):  # "from behind"
+                if child.pos_ in ("ADV", "ADP"):  # "from behind", "from two metres away"
                     event.words += [token.lower_, child.lower_]
+                    for measure in (c for c in child.children if c.dep_ == "npadvmod" and self._is_length(c)):
+                        self._modifier(measure, event)
             elif child.dep_ in ("pobj", "obj"):
                 taken = True
                 part = next((c for c in child.children if child.lemma_ == "time" and self._words.part(c.lower_)), None)
@@ -308,7 +313,7 @@ class Arguments:
             return
         if text in closed("denials") or token.dep_ == "neg":
             return
-        if lemma == "time" and (token.dep_ == "npadvmod" or has(token, "nummod")):
+        if lemma == "time":
             event.times = int(self._amount(token, 0.0)) or event.times  # "this time" is no number
             return
         if token.dep_ == "npadvmod" and self._is_length(token):
@@ -316,7 +321,7 @@ class Arguments:
             event.times = int(self._amount(token)) if lemma in ("step", "pace") else event.times
             event.words.append(lemma)
             return
-        if text in ("once", "twice", "thrice", "repeatedly"):
+        if text in closed("so often"):
             event.times = self._words.numbers[text]
             for child in (c for c in token.children if c.dep_ == "advmod"):  # "spins around twice"
                 self._modifier(child, event)
@@ -334,6 +339,8 @@ class Arguments:
         for child in token.children:
             if child.dep_ == "prep":
                 self._preposition(child, event.subject.who if event.subject else "", event)
+            elif child.dep_ == "npadvmod" and self._words.part(child.lemma_.lower()) and event.object is None:
+                event.object = self._argument(child, event.subject.who if event.subject else "", event)
             elif child.dep_ in ("advmod", "npadvmod", "amod", "compound", "nummod") or (
                 child.dep_ == "conj" and child.pos_ in ("ADV", "ADJ", "NOUN", "ADP")
             ):

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
 from acts.frames import Event, Frame, Match, Ref, best
 from acts.lexicon import Lexicon
-from acts.plan import Act, other_of
+from acts.plan import Act, Span, other_of
 
 from . import wordnet
 from .ellipsis import PERFORM
@@ -315,14 +315,20 @@ def seated(event: Event, match: Found, known: Lexicon, told: Iterable[str]) -> E
     return Event("sit", who, first=event.first, last=event.last, ongoing=True, state=True)
 
 
-def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
-    """The ways to stand or move together that stand beside a verb, as events: "face each" for "face to face"."""
+def formations(event: Event, named: Mapping[str, Span | None]) -> Iterator[Event]:
+    """The ways to stand or move together that stand beside a verb, as events: "face each" for "face to face".
+
+    Args:
+        event: of the verb.
+        named: the formations and where they stand in the text; None for one that only the verb's clause says.
+    """
+    names = list(named)
     if event.distance is not None and event.times is None and "apart" in event.words:
-        names = (*names, "keep apart")
+        names.append("keep apart")
     who = event.subject if event.subject is not None and len(event.subject.who) == 2 else Ref("person", "ab")
     if event.denied:  # "they never touch, always two metres apart"
         names = [name for name in names if name == "keep apart"]
-    for name in dict.fromkeys(names):
+    for name in names:
         verb, _, noun = name.partition(" ")
         if noun in closed("limbs") and event.lemma in closed("strolls"):  # "walks with her arm in arm"
             yield replace(event, words=[*(word for word in event.words if word != FORMATION), noun])
@@ -332,7 +338,7 @@ def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
         if noun == "unison" and not own and event.lemma in vocabulary().verbs["goes"]:
             noun = "step"
         ongoing = event.ongoing and verb == event.lemma
-        formed = Event(verb, who, first=event.first, last=event.last, ongoing=ongoing)
+        formed = Event(verb, who, first=event.first, last=event.last, ongoing=ongoing, said=named.get(name))
         formed.distance = event.distance if noun == "apart" else None
         if verb == "follow":
             formed.subject, formed.object = Ref("person", "b"), Ref("person", "a")
@@ -356,7 +362,7 @@ def next_to(event: Event, match: Found, known: Lexicon) -> Iterator[Event]:
             comes = event.bare(
                 "sidle", subject=event.subject, particles=["up"], words=["up"], prepositions=[("to", ref)]
             )
-            yield from formations(event, ["form line"]) if event.ongoing or event.state else (comes,)
+            yield from formations(event, {"form line": None}) if event.ongoing or event.state else (comes,)
 
 
 def held(event: Event, match: Found, known: Lexicon, find: Find) -> Iterator[tuple[Event, Found]]:

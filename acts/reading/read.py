@@ -159,6 +159,7 @@ class _Planner:
             vague or event.lemma in closed("shows nothing") | closed("stands") or formed[0][0].lemma == event.lemma
         ):
             (event, match), *formed = formed
+            event = replace(event, said=None)
         if match is not None and not self._known.entries[match[0]].shown:
             self._unread.append(Unread(words=self._span(number), why="Bodies cannot show this."))
         elif match is not None:
@@ -196,9 +197,11 @@ class _Planner:
         if both and not entry.mutual and any(isinstance(s, Touch) and s.times and not s.fells for s in entry.stage):
             self._one_after_the_other(to_each=True)  # "they pat each other": of a touch there is one at a time
         for other, formation in formed:
+            placed = shown & {"go", "place"} and formation[0].startswith("form-line")
+            placed = placed or (other.distance is not None and not event.denied)  # "they dance two metres apart"
             if formation[0] == "canon" and both and not entry.mutual:
                 self._one_after_the_other()
-            elif formation[0] != match[0] and not (shown & {"go", "place"} and formation[0].startswith("form-line")):
+            elif formation[0] != match[0] and not placed:
                 self._add(number, other, *formation, beside=at_once)
         for other, posture in held(event, match, self._known, self._matcher.find):
             self._add(number, other, *posture, beside=at_once)
@@ -237,10 +240,16 @@ class _Planner:
             self._clauses[i] = (self._clauses[number][0], self._clauses[i][1])
         return True
 
-    def _formations(self, number: int) -> list[str]:
-        """The ways to move together that the clause of an event names."""
-        span = self._span(number)
-        return [*self._prepared.formations(span.start, span.stop), *([_CANON] if number in self._in_turns else ())]
+    def _formations(self, number: int) -> dict[str, Span | None]:
+        """The ways to move together that the clause of an event names, and where."""
+        span, event = self._span(number), self._events[number]
+        named: dict[str, Span | None] = dict(self._prepared.formations(span.start, span.stop))
+        named |= {_CANON: None} if number in self._in_turns else {}
+        crowds = ((word, ref) for word, ref in event.prepositions if ref.lemma in closed("crowd"))
+        for word, crowd in crowds if event.subject is not None and len(event.subject.who) == 2 else ():
+            start, stop = self._prepared.span(crowd.first, crowd.last)  # the two turn to it side by side
+            named |= {"form line": Span(start=max(self._text.lower().rfind(word, 0, start), 0), stop=stop)}
+        return named
 
     def _repeated(self, number: int, event: Event, has_inner: bool) -> bool:
         """Adds the last act once more where the words say so."""
@@ -290,7 +299,7 @@ class _Planner:
     ) -> None:
         if self._reader.cast.alone and (other := self._known.entries[name].alone) in self._known.entries:
             name = other
-        entry, words = self._known.entries[name], self._span(number)
+        entry, words = self._known.entries[name], event.said or self._span(number)
         if beside is None and (begun := self._includes(entry, match.agents)) is not None:
             words = Span(start=begun.start, stop=words.stop)
         number_of = str(len(self._acts) + 1)
@@ -314,6 +323,7 @@ class _Planner:
         given = event.object is None or entry.thing == "throws"
         last = next(reversed(self._acts), None)
         same = last is not None and (last.act, last.direction) == (name, None) and last.agents != tuple(match.agents)
+        apart = event.distance is not None and "apart" in event.words
         answers = (
             event.direction == "back" and (patient or same) and given and not goes
         )  # "throws it back", "bows back"
@@ -350,7 +360,7 @@ class _Planner:
             times=None if event.distance and (toes or not name.startswith("step")) else event.times,
             manner=(*([ON_TIPTOE] if goes and toes else ()), *event.adverbs[:7]),
             speed=min(max(speed, 0.2), 3.0),
-            direction=None if answers else "down" if entry.thing == "throws" and floored else event.direction,
+            direction="down" if entry.thing == "throws" and floored else None if answers or apart else event.direction,
             distance=event.distance,
             words=words,
         )

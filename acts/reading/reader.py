@@ -70,7 +70,8 @@ class Reader:
         held = {t.i for absolute in self._absolutes.values() for t in (absolute.part, absolute.state)}
         seen = self._arguments.seen | self._of.keys() | self.cast.seen.keys() | held
         for token in self.doc:
-            own = token.dep_ not in _WITHIN and token.i not in seen
+            within = token.dep_ in _WITHIN or (token.dep_ == "advmod" and token.head.pos_ == "NUM")  # "about two"
+            own = not within and token.i not in seen
             own = (own and token.lower_ not in closed("then") | closed("at once")) or self._is_swallowed(token)
             if token.pos_ in _MEANING and own:
                 yield token
@@ -113,7 +114,7 @@ class Reader:
                 event.words.append(each.state.lower_)
                 event.direction = self._words.directions.get(each.state.lower_)
             else:
-                for phrase in (c for c in each.state.children if c.dep_ in ("prep", "advmod")):
+                for phrase in (c for c in each.state.children if c.dep_ in ("prep", "advmod", "prt")):
                     self._arguments.place(phrase, who, event)
             for phrase in each.placed():
                 self._arguments.place(phrase, who, event)

@@ -67,7 +67,10 @@ def related(
             kind = "with"
         if kind == "after":
             act = acts[act.id] = _turned_to(other, act, known)
-            kind = "with" if _carries(other, known) and _carries(act, known) and other.agents == act.agents else kind
+            if (carrier := _carrier(act, known)) and carrier == _carrier(other, known):
+                on_back = other.act == "ride-back" and act.act == "carry"  # "jumps on his back, and he carries her"
+                kind, act = "with", act.model_copy(update={"act": "carry-back" if on_back else act.act})
+                acts[act.id] = act
             if _walks_on(other, act, known):
                 kind, act = "with", act.model_copy(update={"act": "walk-ahead", "patient": None, "thing": None})
                 acts[act.id] = act
@@ -158,12 +161,14 @@ def _turned_to(first: Act, then: Act, known: Lexicon) -> Act:
 def _walks_on(first: Act, then: Act, known: Lexicon) -> bool:
     """True for a person who carries the other and walks, with them still in the arms or on the back."""
     leaves = then.direction == "away" or (_goes(then, {"away"}, known) and not (then.thing or then.direction))
-    same = _carries(first, known) and first.agents == then.agents
+    same = _carrier(first, known) == "".join(then.agents)
     return same and not leaves and _goes(then, {"past", "away", "ahead"}, known)
 
 
-def _carries(act: Act, known: Lexicon) -> bool:
-    return any(isinstance(shape, Lift) and shape.carry != "up" for shape in known.entries[act.act].stage)
+def _carrier(act: Act, known: Lexicon) -> str:
+    """The person who has the other in the arms or on the back; "" for other acts."""
+    lifts = (shape for shape in known.entries[act.act].stage if isinstance(shape, Lift) and shape.carry != "up")
+    return next(((act.patient or "") if lift.who == "patient" else act.agents[0] for lift in lifts), "")
 
 
 def _answers_blow(first: Act, then: Act, known: Lexicon) -> bool:

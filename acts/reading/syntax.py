@@ -8,11 +8,12 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import os
+import re
 import threading
 from collections.abc import Iterator, Mapping, Sequence, Set
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from acts.frames import Event
 from motion import InputError
@@ -31,6 +32,7 @@ _DIGESTS = {
     "tok2vec/model": "e84fc06eb319c94d28e460fc334e292120b01f18baa5dc8b50c977459820a090",
 }
 """SHA-256 of the three networks of en_core_web_sm 3.8.0."""
+_HER = re.compile(r"\bher(?= (?:left|right) ([a-z]+))")
 _lock = threading.Lock()
 
 
@@ -71,10 +73,19 @@ def _language() -> Language:
 
 
 def parse(text: str) -> Doc:
-    """The syntax of a text."""
+    """The syntax of a text.
+
+    "Her right cheek" is parsed as "his right cheek", in which no parser takes the owner for an object.
+    """
     with _lock:  # loads once, and spaCy's pipeline is not meant for several threads
         _words()
-        return _language()(text)
+        doc = _language()(_HER.sub(lambda her: "his" if vocabulary().named_part(her[1]) else her[0], text))
+    if doc.text == text:
+        return doc
+    said = {"tags": "tag_", "pos": "pos_", "lemmas": "lemma_", "deps": "dep_"}
+    same: Any = {name: [getattr(token, attribute) for token in doc] for name, attribute in said.items()}
+    words, spaces = [text[t.idx : t.idx + len(t)] for t in doc], [bool(t.whitespace_) for t in doc]
+    return type(doc)(doc.vocab, words, spaces, heads=[token.head.i for token in doc], **same)
 
 
 @cache

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from functools import cache
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,6 @@ class Vocabulary:
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
         self._people, self._names = _sets(tables["people"]), _sets(tables["names"])
-        self.shorthand: dict[str, str] = dict(tables["shorthand"])
         self.places = frozenset(tables["places"]["nouns"].split())
         self.seats = frozenset(tables["places"]["seats"].split())
         self._states = {
@@ -35,15 +35,17 @@ class Vocabulary:
         }
         self.both = frozenset(tables["groups"]["both"].split())
         self._parts = {word: family for family, text in tables["body"].items() for word in (family, *text.split())}
-        self.numbers: dict[str, int] = dict(tables["numbers"])
-        self.metres: dict[str, float] = dict(tables["metres"])
-        self.seconds: dict[str, float] = dict(tables["seconds"])
-        named = ("directions", "speeds", "gaits", "likeness", "marks", "noun_marks")
+        named = ["directions", "speeds", "gaits", "likeness", "marks", "noun_marks", "shorthand"]
+        named += ["numbers", "metres", "seconds"]
         by_word = {table: {w: name for name, text in tables[table].items() for w in text.split()} for table in named}
         self.directions, self.likeness = by_word["directions"], by_word["likeness"]
         """How somebody moves who moves like one of these."""
-        self.speeds, self.gaits = ({w: float(x) for w, x in by_word[name].items()} for name in ("speeds", "gaits"))
-        """Factors of speed of adverbs, and those that a verb brings along, beside a walk."""
+        self.shorthand = by_word["shorthand"]
+        self.numbers = {word: int(number) for word, number in by_word["numbers"].items()}
+        measures = ("metres", "seconds", "speeds", "gaits")
+        floats = ({word: float(value) for word, value in by_word[name].items()} for name in measures)
+        self.metres, self.seconds, self.speeds, self.gaits = floats
+        """Units of length and time, and factors of speed of adverbs and of verbs, beside a walk."""
         self.marks, self.noun_marks = by_word["marks"], by_word["noun_marks"]
         """How a clause with one of these words lies beside its main clause, and an act that a noun behind one names."""
         sides, ways = (("left", "right"), ("right", "left")), tables["to_sides"]["phrases"]
@@ -57,7 +59,11 @@ class Vocabulary:
         """Verbs that mean what their object names, in the order in which they are tried."""
         self.adjectives = _sets(tables["adjectives"])
         """Adjectives that say of what follows that it is not done, or only wished."""
-        joined: dict[str, str] = dict(tables["phrases"])
+        joined = {
+            " ".join(words): said.format(*words)
+            for phrase, said in tables["phrases"].items()
+            for words in product(*(word.split("|") for word in phrase.split()))
+        }
         self.formations = {
             tuple(phrase.split()): name for name, listed in tables["formations"].items() for phrase in listed
         }

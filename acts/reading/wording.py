@@ -11,6 +11,8 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from acts.plan import Span
+
 from .ellipsis import Ellipsis, stands_absolutely
 from .people import A_NAME, B_NAME
 from .syntax import adverb_of, is_adverb
@@ -151,12 +153,7 @@ class _Preparation:
             word = following  # "to shoulder height", where nobody shoulders anything
         elif lower in ("right", "way") and following in closed("intensified") and not self._keeps(i):
             word = "around" if following == "round" else following  # "walks right past him", "way up"
-        elif (
-            following.isalpha()
-            and lower not in self._words.numbers
-            and not self._is_verb(lower)
-            and self._is_verb(lower + following)
-        ):
+        elif following.isalpha() and lower not in self._words.numbers and self._is_verb(lower + following):
             word = lower + following
         return self._as_one(word, i, 2) if word else 0
 
@@ -188,7 +185,8 @@ class _Preparation:
     def _supplied(self, i: int) -> list[tuple[str, int, int]]:
         """The article that a bare noun of a person lacks."""
         word, start, _ = self._tokens[i]
-        sided = self._lower(i) in ("left", "right") and self._words.named_part(self._lower(i + 1))
+        goes = self._lower(i - 1) in closed("before sides") or self._words.named_part(self._lower(i + 1))
+        sided = self._lower(i) in ("left", "right") and goes
         begun = self._pieces[-1:] and self._pieces[-1][1:] == (start, start)  # a verb was supplied
         within = closed("determiners") | {"left", "right", "and", "or", "with"}
         owned = self._lower(i - 2).endswith("'s")  # "under her partner's raised left arm"
@@ -218,7 +216,7 @@ class _Preparation:
             return "with"  # "kicks using the left leg"
         supplied = self._pieces[-1][0].partition(" ")[0] if self._pieces else ""  # with its object, where it has one
         moved = self._is_verb(self._lower(i - 1)) or self._is_verb(supplied)
-        if lower in ("left", "right") and moved and not self._words.part(following):
+        if lower in ("left", "right") and moved and not self._words.named_part(following):
             return f"to the {lower}"  # "turn left": no past of "leave"
         if word.islower() and word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
@@ -313,13 +311,13 @@ class Text:
         end = len(self.original)
         return Text(self.original, [*self._pieces, (".", end, end)])
 
-    def formations(self, start: int, stop: int) -> Iterator[str]:
-        """The ways to stand or move together, as "side by side", that a stretch of the original names."""
+    def formations(self, start: int, stop: int) -> Iterator[tuple[str, Span]]:
+        """The ways to stand or move together, as "side by side", that a stretch of the original names, and where."""
         known = vocabulary().formations
         for _, first, last in self._pieces:
             words = tuple(word.lower() for word, _, _ in tokens(self.original[first:last]))
             if start <= first and last <= stop and (name := known.get(words)):
-                yield name
+                yield name, Span(start=first, stop=last)
 
     def left_out(self) -> Iterator[tuple[int, int]]:
         """Stretches of the original that are not parsed, such as what is said in quotation marks, with their words.

@@ -120,7 +120,7 @@ def placed(score: Score) -> Standing | None:
     if score.behind:
         return _behind("ab".index(score.behind), score.apart or BEHIND_BACK)
     if score.twirls or (strike and strike.answered) or score.apart:
-        apart = TWIRL if score.twirls else BOUTS[strike.bout].apart if strike else score.apart
+        apart = TWIRL if score.twirls else score.apart or (BOUTS[strike.bout].apart if strike else 0.0)
         return Standing(np.array([[0.0, 0.0], [0.0, apart]]), np.array([0.0, math.pi]))
     return None
 

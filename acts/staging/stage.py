@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from acts import shapes
 from acts.captions import of_each
-from acts.lexicon import Lexicon, is_fixture, kind_of, lexicon
+from acts.lexicon import Entry, Lexicon, is_fixture, kind_of, lexicon
 from acts.plan import FROM_BEHIND, ON_TIPTOE, Act, beats, other_of
 
 from .act_kinds import (
@@ -32,6 +32,7 @@ from .act_kinds import (
     walks,
 )
 from .figures import DANCES, LIMBS
+from .floor import CLOSE
 from .gestures import GESTURES
 from .holds import COUPLE
 from .moves import (
@@ -80,6 +81,14 @@ def _score_of(acts: tuple[Act, ...], known: Lexicon) -> Score:
     return _Stage(acts, known).score()
 
 
+def _distance(act: Act, entry: Entry) -> float:
+    """The metres between two people of whom one does something from so far away, or comes from there; else 0."""
+    ways = {shape.way for shape in entry.stage if isinstance(shape, shapes.Go)}
+    if act.distance is None or not (act.patient or len(act.agents) == 2) or not ways <= {"to"}:
+        return 0.0
+    return act.distance + CLOSE / 2 * len(ways)
+
+
 class _Stage:
     """One beat's acts, taken shape by shape."""
 
@@ -113,6 +122,7 @@ class _Stage:
     def score(self) -> Score:
         """All that they ask for."""
         for act, entry in sorted(self.done, key=lambda pair: self.level[pair[0].id]):
+            self.apart = self.apart or _distance(act, entry)
             for shape in () if is_manner(entry) and len(self.done) > 1 else entry.stage:
                 self._take(act, shape)
         for act in self.acts:

@@ -276,7 +276,7 @@ def test_another_skeleton_is_refused() -> None:
     [
         ("He brings her a plate.", "A hands the plate to B"),
         ("A picks up a book.", "A picks up the book"),
-        ("She holds out a mug to him.", "A offers B the mug"),
+        ("She holds out a mug to him.", "A holds the mug out to B"),
         ("A holds out the left hand to B.", "A holds out the left hand to B"),
         ("A pushes B with both hands.", "A pushes B with both hands"),
         ("A jumps once.", "A jumps once"),
@@ -295,10 +295,10 @@ def test_another_skeleton_is_refused() -> None:
         ("A waves goodbye to her friend.", "A waves at B"),
         ("Two duelists walk five paces.", "they walk (3.5 m)"),
         ("A pushes B away.", "A pushes B away"),
-        ("They look at each other.", "they face each other"),
+        ("They look at each other.", "they look at each other"),
         ("A drags B across the room.", "A drags B"),
         ("A catches B.", "A catches B"),
-        ("A puts an arm around B's shoulders.", "A puts an arm around B"),
+        ("A puts an arm around B's shoulders.", "A puts an arm around B's shoulders"),
     ],
 )
 def test_a_verdict_names_the_thing_and_the_qualifiers_of_the_words(sentence: str, words: str) -> None:
