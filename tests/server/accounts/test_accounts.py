@@ -46,15 +46,19 @@ def people(database: Database, monkeypatch: pytest.MonkeyPatch) -> Accounts:
     return people
 
 
+def signed_in(people: Accounts, name: str, password: str, address: str, known: str = "") -> str | None:
+    return people.begin(people.admit(name, address, known), password)
+
+
 def test_passwords_are_kept_as_salted_hashes(people: Accounts, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(accounts, "COST", 2**5)  # of a later version
     people.add("eve", "correct horse")
     (ada, eve) = (people.of(name) for name in ("ada", "eve"))
     assert ada and eve and "correct horse" not in ada.password and ada.password[-64:] != eve.password[-64:]
-    assert people.begin("ada", "correct horse", "1.2.3.4") and people.begin("eve", "correct horse", "1.2.3.4")
+    assert signed_in(people, "ada", "correct horse", "1.2.3.4") and signed_in(people, "eve", "correct horse", "1.2.3.4")
     people.arrive("mary")  # by a proxy, without a password
     for name, password in (("ada", "wrong horse"), ("nobody", "nobody"), ("mary", ""), ("mary", "nobody"), ("", "")):
-        assert people.begin(name, password, "1.2.3.4") is None
+        assert signed_in(people, name, password, "1.2.3.4") is None
 
 
 @pytest.mark.parametrize("name", ["", "a:b", "a\nroot:x", "../x", "Ada", "a" * 41, "é"])
@@ -67,7 +71,7 @@ def test_what_cannot_be_is_a_sentence(people: Accounts, name: str) -> None:
 
 
 def test_people_end(people: Accounts, database: Database) -> None:
-    token = people.begin("ada", "correct horse", "1.2.3.4")
+    token = signed_in(people, "ada", "correct horse", "1.2.3.4")
     found = people.person(token or "")
     assert token and found and found.name == "ada"
     assert people.person("x" * 43) is None and people.person("") is None
@@ -77,7 +81,7 @@ def test_people_end(people: Accounts, database: Database) -> None:
         session.execute(update(SignIn).values(until=time.time() - 1))
     assert people.person(token) is None
     for end in (people.end, lambda _: people.add("ada", "correct horse")):
-        token = people.begin("ada", "correct horse", "1.2.3.4")
+        token = signed_in(people, "ada", "correct horse", "1.2.3.4")
         assert token and people.person(token)
         end(token)
         assert people.person(token) is None
@@ -93,7 +97,7 @@ def clock(people: Accounts) -> Clock:
 def refused_for(people: Accounts, password: str, address: str, known: str = "") -> int:
     """The seconds that a sign-in as ada has to wait; 0 if the password is looked at."""
     try:
-        people.begin("ada", password, address, known)
+        signed_in(people, "ada", password, address, known)
     except Refused as error:
         return int(str(error).split()[-2])
     return 0
@@ -104,14 +108,14 @@ def test_guesses_from_an_address_are_slowed_down(people: Accounts, clock: Clock)
         assert not refused_for(people, "wrong horse", "6.6.6.6")
     wait = refused_for(people, "correct horse", "6.6.6.6")
     assert 0 < wait <= 60
-    assert people.begin("ada", "correct horse", "1.2.3.4"), "its owner is not locked out"
+    assert signed_in(people, "ada", "correct horse", "1.2.3.4"), "its owner is not locked out"
     clock.now += wait
-    assert people.begin("ada", "correct horse", "6.6.6.6"), "after a while the next try is looked at"
+    assert signed_in(people, "ada", "correct horse", "6.6.6.6"), "after a while the next try is looked at"
 
 
 def test_right_passwords_cost_no_tries(people: Accounts, clock: Clock) -> None:
     for _ in range(3 * accounts.TRIES):
-        assert people.begin("ada", "correct horse", "1.2.3.4")
+        assert signed_in(people, "ada", "correct horse", "1.2.3.4")
 
 
 def test_a_name_is_slowed_down_for_all_addresses_together(people: Accounts, clock: Clock) -> None:
@@ -119,11 +123,11 @@ def test_a_name_is_slowed_down_for_all_addresses_together(people: Accounts, cloc
     guesses = [refused_for(people, "wrong horse", f"6.6.6.{i}") for i in range(accounts.NAME_TRIES + 20)]
     assert guesses.count(0) == accounts.NAME_TRIES <= 100
     assert 0 < refused_for(people, "correct horse", "1.2.3.4") <= 10
-    assert people.begin("ada", "correct horse", "1.2.3.4", known), "where she has signed in before, she still can"
+    assert signed_in(people, "ada", "correct horse", "1.2.3.4", known), "where she has signed in before, she still can"
     clock.now += 10
-    assert people.begin("ada", "correct horse", "1.2.3.4"), "elsewhere she waits for seconds"
+    assert signed_in(people, "ada", "correct horse", "1.2.3.4"), "elsewhere she waits for seconds"
     people.add("eve", "password of eve")
-    assert people.begin("eve", "password of eve", "1.2.3.4"), "others are not slowed down"
+    assert signed_in(people, "eve", "password of eve", "1.2.3.4"), "others are not slowed down"
 
 
 def test_a_browser_is_known_for_its_own_name_and_password(people: Accounts, clock: Clock) -> None:
@@ -226,7 +230,7 @@ def test_accounts_from_a_shell(
     assert main(["user", "add", "ada"]) == 0
     assert json.loads(capsys.readouterr().out.splitlines()[-1])["added"] == "ada"
     database = Database(tmp_path / "history.db")
-    assert Accounts(database).begin("ada", "correct horse", "1.2.3.4")
+    assert signed_in(Accounts(database), "ada", "correct horse", "1.2.3.4")
     database.close()
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx
@@ -12,8 +14,20 @@ from fastapi.testclient import TestClient
 from sqlalchemy import update
 
 from motion import InputError
-from tests.server.clients import CALL, FIELDS, HTML, events_of, find_fn, lab_of, no_room, served_on_loopback, sign_in
+from tests.server.clients import (
+    CALL,
+    FIELDS,
+    HTML,
+    events_of,
+    find_fn,
+    lab_of,
+    no_room,
+    served_on_loopback,
+    sign_in,
+    wait_for,
+)
 from tests.server.lab import add_accounts
+from webdemo.server.accounts import accounts
 from webdemo.server.store.database import Share, SignIn
 from webdemo.ui.history import Entry, Search
 
@@ -85,6 +99,29 @@ def test_a_browser_is_remembered_that_somebody_signed_in_with(shared: TestClient
     assert shared.post("/login", data=given, headers={"cookie": f"pasdedeux_known={known}"}).json() == {"success": True}
     accounts._throttle._names.take("ada", -60)
     shared.cookies.clear()
+
+
+def test_a_refused_try_waits_for_no_place(shared: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And one address takes no more places than its share, so that others' passwords are checked soon."""
+    people, checked = lab_of(shared).accounts, threading.Event()
+    monkeypatch.setattr(people, "_throttle", accounts.Throttle())
+    monkeypatch.setattr(accounts, "_fits", lambda *_: checked.wait(60))
+    most = int(lab_of(shared).quotas.sign_ins.person)
+
+    def status(name: str) -> int:
+        return shared.post("/login", data={"username": name, "password": "?"}).status_code
+
+    with ThreadPoolExecutor(most) as pool:
+        waiting = [pool.submit(status, f"stranger {i}") for i in range(most - 1)]
+        wait_for(lambda: len(people._throttle._names._left) >= most - 1)
+        for _ in range(accounts.TRIES):
+            people.admit("eve", "127.0.0.1")
+        assert pool.submit(status, "eve").result(timeout=20) == 429
+        waiting.append(pool.submit(status, "one more"))
+        wait_for(lambda: "one more" in people._throttle._names._left)
+        assert status("one too many") == 429 and "one too many" not in people._throttle._names._left
+        checked.set()
+        assert {answer.result() for answer in waiting} == {401}
 
 
 def newest(client: TestClient, owner: str) -> Entry:

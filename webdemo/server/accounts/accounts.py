@@ -10,7 +10,6 @@ import secrets
 import threading
 import time
 from collections.abc import Callable
-from functools import partial
 
 from sqlalchemy import delete, select
 from sqlalchemy.dialects.sqlite import insert
@@ -83,35 +82,47 @@ class Accounts:
                 account = session.get_one(Account, name)
         return account
 
-    def begin(self, name: str, password: str, address: str, known: str = "") -> str | None:
-        """A new sign-in's token, or None if name and password do not match.
+    def admit(self, name: str, address: str, known: str = "") -> tuple[str, str, str]:
+        """Takes one of the tries that a name and an address have, before the password is looked at; :meth:`begin` gives
+        it back.
 
         Args:
             name: of the account.
-            password: to be checked.
             address: where the try comes from.
             known: what :meth:`known_browser` gave this browser, if it did.
 
         Raises:
-            Refused: after too many wrong passwords, or if an administrator has suspended the account.
+            Refused: after too many wrong passwords.
         """
-        account, counted = self.of(name), (name, address, self._browser(name, known))
-        # A name that is none may be a password in the wrong field.
-        note = partial(audit, "sign-in", person=name if account else "(unknown)", how="password")
+        counted = name, address, self._browser(name, known)
         with self._lock:
             wait = self._throttle.take(*counted)
         if wait:
-            note(ok=False, reason="too many tries")
+            self._note(name, ok=False, reason="too many tries")
             raise Refused(429, f"Too many wrong passwords: try again in {math.ceil(wait)} seconds.", "tries")
+        return counted
+
+    def begin(self, admitted: tuple[str, str, str], password: str) -> str | None:
+        """A new sign-in's token, or None if name and password do not match.
+
+        Args:
+            admitted: by :meth:`admit`.
+            password: to be checked.
+
+        Raises:
+            Refused: if an administrator has suspended the account.
+        """
+        name, _, _ = admitted
+        account = self.of(name)
         stored = account.password if account else ""
         fits = _fits(password, stored or self._nobody)  # as long for a name that is not there
         if account is None or not stored or not fits:
-            note(ok=False, reason="wrong name or password")
+            self._note(name, ok=False, reason="wrong name or password")
             return None
         with self._lock:
-            self._throttle.take(*counted, tries=-1)
+            self._throttle.take(*admitted, tries=-1)
         if account.suspended:
-            note(ok=False, reason="suspended")
+            self._note(name, ok=False, reason="suspended")
             raise Refused(403, SUSPENDED, "suspended")
         token, now = secrets.token_urlsafe(32), time.time()
         with self.database.session.begin() as session:
@@ -121,8 +132,12 @@ class Accounts:
             if session.scalar(same) is None:  # it was changed meanwhile
                 return None
             session.add(SignIn(digest=_digest(token), person=name, until=now + self.seconds))
-        note()
+        self._note(name)
         return token
+
+    def _note(self, name: str, *, ok: bool = True, reason: str | None = None) -> None:
+        # A name that is none may be a password in the wrong field.
+        audit("sign-in", ok=ok, person=name if self.of(name) else "(unknown)", how="password", reason=reason)
 
     def person(self, token: str) -> Account | None:
         """The person of a sign-in; None if it is unknown or has ended."""

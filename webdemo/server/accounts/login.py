@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
 from urllib.parse import urlsplit
 
+from anyio import CapacityLimiter
+from anyio.to_thread import run_sync
 from fastapi import APIRouter, Form, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
@@ -19,7 +20,7 @@ from .accounts import Accounts
 from .visitors import KNOWN_COOKIE, SESSION_COOKIE, YEAR, set_cookie
 
 AT_ONCE = 2
-"""Passwords that are checked at a time, so that guesses cannot take all memory and cores; further tries wait."""
+"""Passwords that are checked at a time, so that guesses cannot take all memory and cores; further ones wait."""
 WRONG = "The name or the password is wrong: try again."
 
 
@@ -27,7 +28,7 @@ def login_routes(settings: Settings, accounts: Accounts) -> APIRouter:
     """``/login`` (the page, and POST for it and for gradio_client) and ``/logout``."""
     router = APIRouter()
     root = settings.root_path
-    places = asyncio.Semaphore(AT_ONCE)
+    places = CapacityLimiter(AT_ONCE)
 
     def page(wanted: str, *, name: str = "", error: str = "", status: int = 200) -> HTMLResponse:
         body = sign_in_card(action=f"{root}/login", wanted=wanted, name=name[:40], error=error)
@@ -50,10 +51,9 @@ def login_routes(settings: Settings, accounts: Accounts) -> APIRouter:
     ) -> Response:
         in_browser = "text/html" in request.headers.get("accept", "")
         address, name = network_of(request.client.host if request.client else ""), username.strip().lower()
-        async with places:
-            known = request.cookies.get(KNOWN_COOKIE, "")
-            token = await run_in_threadpool(accounts.begin, name, password, address, known)
-            browser = await run_in_threadpool(accounts.known_browser, name) if token else ""
+        known = request.cookies.get(KNOWN_COOKIE, "")
+        admitted = await run_in_threadpool(accounts.admit, name, address, known)  # who is refused waits for nobody
+        token = await run_sync(accounts.begin, admitted, password, limiter=places)
         if token is None:
             if in_browser:
                 return page(_own_path(next), name=username, error=WRONG, status=401)
@@ -61,7 +61,7 @@ def login_routes(settings: Settings, accounts: Accounts) -> APIRouter:
         opened = RedirectResponse(f"{root}{_own_path(next)}", status_code=303)
         response: Response = opened if in_browser else JSONResponse({"success": True})
         keep(response, request, SESSION_COOKIE, token, accounts.seconds)
-        keep(response, request, KNOWN_COOKIE, browser, YEAR)
+        keep(response, request, KNOWN_COOKIE, await run_in_threadpool(accounts.known_browser, name), YEAR)
         return response
 
     @router.get("/logout")

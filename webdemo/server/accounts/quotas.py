@@ -91,6 +91,7 @@ class Quotas:
         gets, address_gets: a minute, of the others.
         events: unfinished events of the page: runs, films, files that are read.
         large: requests of a size that many of them together would fill the memory.
+        sign_ins: of strangers, which wait for their passwords to be checked.
         watched: streams that say how much of an upload has come, which look twenty times a second.
         waiting: runs in the queue.
         live: live streams.
@@ -107,6 +108,7 @@ class Quotas:
         self.gets, self.address_gets = RateLimit(gets), RateLimit(gets * people)
         self.events = Quota("unfinished tasks", settings.events, near, 2 * max(near, settings.queue) + 64)
         self.large = Quota("large requests on their way", 4, 4 * people, 64)
+        self.sign_ins = Quota("sign-ins on their way", 8, everybody=64)
         self.watched = Quota("uploads that are watched", 1, people, 64)
         self.waiting = Quota("runs waiting", settings.waiting, settings.waiting * people, settings.queue)
         self.live = Quota("live streams", 1, max(1, settings.live // 2), settings.live)

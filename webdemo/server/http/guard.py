@@ -262,7 +262,9 @@ class Guard:
         if declared > most:
             raise too_large(most)
         size = most if b"transfer-encoding" in exchange.headers else declared
-        if is_upload(path):
+        if path == "/login":
+            self._hold(self.quotas.sign_ins, exchange, visitor)
+        elif is_upload(path):
             await self._make_room(visitor, size)
         elif size > _LARGE:
             self._hold(self.quotas.large, exchange, visitor)
