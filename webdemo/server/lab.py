@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import time
 from typing import Any
 
 from motion import InputError
@@ -25,9 +24,6 @@ from .settings import Settings
 
 log = logging.getLogger(__name__)
 
-ANSWER_SECONDS = 5.0
-"""Least seconds allowed for sending results of finished runs, even with a shorter grace period."""
-
 
 class Lab:
     """The parts of a running server; ``app.state.lab``.
@@ -37,15 +33,12 @@ class Lab:
         engine: what generates.
         scratch: uploads and files for download; without it they are not counted.
 
-    Attributes:
-        sending: results of runs that are being sent; changed by the server's main thread alone.
-
     Raises:
         InputError: if the database or the data folder cannot be used, or people are to sign in and nobody can.
     """
 
     def __init__(self, settings: Settings, engine: EngineLike, scratch: Scratch | None = None) -> None:
-        self.settings, self.sending = settings, 0
+        self.settings = settings
         self.database = database = Database(settings.database)
         self.accounts = Accounts(database, settings.session_hours)
         if settings.accounts and not settings.proxy_user and self.accounts.empty:
@@ -86,13 +79,9 @@ class Lab:
 
     def stop(self) -> None:
         """Accepts no more runs and waits for running ones, at most for the grace period of the settings."""
-        until = time.monotonic() + self.settings.grace_seconds
         self.health.stopping = True
         self.streams.stop()
         left = self.queue.close(self.settings.grace_seconds)
-        until = max(until, time.monotonic() + ANSWER_SECONDS)
-        while self.sending and time.monotonic() < until:  # results are still written and sent
-            time.sleep(0.05)
         if left:
             log.warning("%d runs were stopped before their end.", left)
 

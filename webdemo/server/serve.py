@@ -29,8 +29,8 @@ SWITCH_SECONDS = 0.001
 FILES = 512
 """Open files beside the connections: the database, motions, libraries."""
 OTHER = "Another process serves the lab in {}: stop it, or choose another folder with PASDEDEUX_DATA."
-CLOSING_SECONDS = 3
-"""Seconds allowed for open connections once all runs have ended."""
+CLOSING_SECONDS = 5
+"""Seconds allowed for open connections once all runs have ended: results are still written and sent."""
 
 
 class Server(uvicorn.Server):

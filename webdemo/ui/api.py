@@ -240,9 +240,9 @@ class ReactEndpoint(Endpoint):
             part = {name: asked.pop(name) for name in ("person", "start", "end", "keep_start")}
             part = {**part, "person": part["person"] or None, "end": part["end"] or None}
             clip, pose = read_actor(actor, **part, choices=reading_choices(asked))
-            return ReactRequest(actor=clip, first_pose=pose, prompt=prompt, steps=steps, **asked)
+            return ReactRequest(actor=clip, first_pose=pose, prompt=prompt or "", steps=steps, **asked)
 
-        title = prompt.strip() or f"Reaction to {Path(actor or '').stem}"
+        title = (prompt or "").strip() or f"Reaction to {Path(actor or '').stem}"
         return self._answer(request, title, progress, reads=True)
 
 

@@ -97,11 +97,11 @@ def test_none_takes_a_value_that_no_page_sends(backend: Backend, anyone: Target,
         data = [usual(component) for component in function.inputs]
         tries = [[*data, "more"], data[1:] if data else [None, None], [WRONG[0]] * len(data)]
         for place in range(len(data)):
-            tries += [[*data[:place], wrong, *data[place + 1 :]] for wrong in dice.sample(WRONG, 3)]
+            tries += [[*data[:place], wrong, *data[place + 1 :]] for wrong in (None, [], *dice.sample(WRONG, 2))]
         for wrong in tries:
             said = anyone.event("eve", number, ada.fill(wrong), ada.fill(dice.choice(WRONG)))
             assert not [each for each in (*NEVER, "Internal Server Error") if each in said], (number, wrong, said)
-            assert "Something went wrong inside" not in said, (number, wrong, said)
+            assert "Something went wrong inside" not in said and '"error":null' not in said, (number, wrong, said)
             answered += '"process_completed"' in said
     assert answered > 50, "some pass the guard: functions read them"
     assert "Traceback" not in anyone.log()[logged:], anyone.log()[logged:][-3000:]

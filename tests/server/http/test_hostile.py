@@ -56,9 +56,10 @@ def test_an_upload_stays_in_its_folder(local: TestClient, name: str, tmp_path: P
     assert not Path("/etc/evil.bvh").exists() and not (Path.cwd().parent / "evil.bvh").exists()
 
 
-def test_many_parts_of_a_file_are_the_whole_of_it(local: TestClient) -> None:
+@pytest.mark.parametrize("parts", ["bytes=0-0,2-2", "bytes=--1", "bytes=a-b", "lines=1-2"])
+def test_parts_that_cannot_be_given_are_the_whole_file(local: TestClient, parts: str) -> None:
     (path,) = local.post("/gradio_api/upload", files={"files": ("a.bvh", b"HIERARCHY")}).json()
-    answer = local.get(f"/gradio_api/file={path}", headers={"range": "bytes=0-0,2-2"})
+    answer = local.get(f"/gradio_api/file={path}", headers={"range": parts})
     assert (answer.status_code, answer.content) == (200, b"HIERARCHY")
 
 
@@ -93,8 +94,9 @@ def test_throwing_the_cookie_away_gains_nothing(open_to_all: TestClient) -> None
     assert other.post("/gradio_api/queue/join", content=b"[]").status_code != 429
 
 
-def test_whoever_asks_too_often_is_answered_once_a_second(
-    served: tuple[str, int], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("path", "status"), [("/nothing", 429), ("/no//thing", 404)])
+def test_whoever_is_refused_is_answered_once_a_second(
+    served: tuple[str, int], monkeypatch: pytest.MonkeyPatch, path: str, status: int
 ) -> None:
     """Greedy connections would otherwise have the server do nothing but refuse, and /healthz would wait for that."""
     host, port = served
@@ -104,11 +106,11 @@ def test_whoever_asks_too_often_is_answered_once_a_second(
     def ask(until: float) -> None:
         with httpx.Client(base_url=f"http://{host}:{port}", headers=headers, timeout=30) as client:
             while time.monotonic() < until:
-                if client.post("/nothing").status_code == 429:
+                if client.post(path).status_code == status:
                     refused.append(time.monotonic())
 
     with httpx.Client(base_url=f"http://{host}:{port}", headers=headers, timeout=30) as client:
-        while client.post("/nothing").status_code != 429:
+        while client.post(path).status_code != status:
             pass
     monkeypatch.setattr(exchange, "BACK_OFF", 1.0)
     with ThreadPoolExecutor(connections) as greedy:

@@ -54,7 +54,6 @@ TYPICAL: dict[type, Any] = {
     gr.Dropdown: "intergen",
     gr.State: None,
     gr.File: FILE | {"orig_name": "x.glb", "size": 12, "url": "http://127.0.0.1/x", "is_stream": False},
-    gr.UploadButton: [FILE],
     StoryLine: STORY,
     Reading: {"text": "They bow.", "plan": "{}", "number": 3},
 }
@@ -113,7 +112,9 @@ def test_every_component_sends_its_own_value_and_a_typical_one(page: Blocks) -> 
         own = None if isinstance(component, gr.State) else getattr(component, "value", None)
         kind = next((k for k in type(component).__mro__ if k in TYPICAL), None)
         typical = TYPICAL[kind] if kind is not None else "a text"  # the panels of films and streams send texts
-        for value in (None, own, typical):
+        if isinstance(component, gr.File) and component.file_count != "single":
+            typical = [typical]
+        for value in (own, typical) if kind is gr.Slider else (None, own, typical):
             assert passes(value, component), (component.label, type(component), value)
 
 
@@ -129,9 +130,11 @@ def test_no_component_takes_what_is_forged(page: Blocks) -> None:
 
 def test_no_component_without_files_takes_a_file_even_ones_own(page: Blocks) -> None:
     for component in inputs(page).values():
-        files = isinstance(component, gr.File | gr.UploadButton)
+        files = isinstance(component, gr.File)
+        several = files and component.file_count != "single"
         for value in (FILE, [FILE], FILE | {"orig_name": "x.glb"}):
-            assert passes(value, component) == files, (component.label, type(component))
+            right = several if isinstance(value, list) else files and not several
+            assert passes(value, component) == right, (component.label, type(component))
         assert not passes(FILE | {"path": "/uploads/eve/x.glb"}, component)
         assert not passes([FILE, FILE | {"path": "/etc/passwd"}], component)
 
@@ -163,17 +166,18 @@ def test_a_story_is_taken_by_the_server_again_and_again(local: TestClient, page:
     assert len(takes_story) > 5
     assert story_fields(STORY)["beats"]
     for number in takes_story:
-        data = [STORY if isinstance(each, StoryLine) else None for each in page.fns[number].inputs]
+        data = [
+            STORY if isinstance(each, StoryLine) else getattr(each, "value", None) for each in page.fns[number].inputs
+        ]
         body = {"fn_index": number, "data": data, "session_hash": "an afternoon", "trigger_id": None}
         for _ in range(2):
             answer = local.post("/gradio_api/queue/join", json=body)
             assert answer.status_code == 200, answer.text
 
 
-@pytest.mark.parametrize("component", [gr.File, gr.UploadButton])
-def test_a_call_names_the_senders_own_upload_alone(component: type) -> None:
+def test_a_call_names_the_senders_own_upload_alone() -> None:
     with gr.Blocks() as page:
-        part = component()
+        part = gr.File()
         part.upload(lambda file: None, inputs=part)
     calls = Payloads(page)
     calls.check({"fn_index": 0, "data": [FILE]}, None, "ada")

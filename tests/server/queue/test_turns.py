@@ -9,7 +9,7 @@ from webdemo.server.queue.turns import Accounts, Job, Pace, in_turn, next_job, u
 
 
 def job(person: str, cost: float, started: float = 0.0) -> Job:
-    return Job(person, None, "m", cost, started=started)
+    return Job(person, None, cost, started=started)
 
 
 @pytest.fixture(autouse=True)

@@ -42,8 +42,8 @@ _NOT_FRAMED = "frame-ancestors 'self'"
 """Not on a Space, which shows its page in a frame."""
 _NOBODY = "'none'"
 BACK_OFF = 1.0
-"""Seconds before somebody is told that they ask too often. They would ask again at once, and to refuse costs as much as
-to serve: so a connection that does nothing else costs one refusal a second."""
+"""Seconds before anybody is told of a mistake of theirs. A program would ask again at once, and to refuse costs as much
+as to serve: so a connection that does nothing else costs one refusal a second."""
 BAD_UPLOAD = "The upload cannot be read: choose the file again."
 
 
@@ -124,7 +124,7 @@ class Exchange:
 
     async def _pass_on(self, message: Message) -> None:
         if message["type"] == "http.response.start":
-            if message["status"] == 429:
+            if 400 <= message["status"] < 500:
                 await asyncio.sleep(BACK_OFF)
             self.status, self.first_byte = message["status"], self.seconds
             self._dress(MutableHeaders(scope=message))

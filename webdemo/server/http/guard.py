@@ -42,8 +42,6 @@ _NOT_HEARD = (b"x-forwarded-host", b"x-forwarded-proto", b"x-gradio-server")
 """Headers from any client from which Gradio would take the page's address. Here they are dropped: the address is
 Host's, and the scheme is that of a trusted proxy."""
 _CHANGING = ("POST", "PUT", "PATCH", "DELETE")
-_ANSWERS = tuple(f"{API}{name}/" for name in ("queue/data", "call", "run", "api"))
-"""Paths that send the results of runs."""
 _WATCHED = ("/healthz", "/metrics")
 """Paths for those who watch the server, which have rules of their own and say what is wrong."""
 _LIVE_WEIGHT = 0.05
@@ -55,6 +53,8 @@ _PAGE_WEIGHT = 5.0
 """The number of requests that a view of a public page counts as: reading a scene of three minutes takes 0.2 s."""
 _BY_A_BAD_FORM = (AttributeError, LookupError, TypeError, ValueError)
 """What Gradio raises over a form that is none."""
+_RANGE = re.compile(rb"bytes=(?:\d{1,15}-\d{0,15}|-\d{1,15})")
+"""What Gradio knows of ranges; a header that says anything else is left out, as RFC 9110 has it."""
 _HOST = re.compile(r"[a-z0-9._\[\]:-]*+")
 _LARGE = 2**18
 """Bytes of a body above which it needs one of the places for large ones until it is answered."""
@@ -97,7 +97,7 @@ class Guard:
             path = path_below(self.settings.root_path, scope["path"], scope.get("query_string", b""))
             exchange.path = path
             heard = [pair for pair in scope["headers"] if pair[0] not in _NOT_HEARD or on_a_space()]
-            heard = [pair for pair in heard if pair[0] != b"range" or b"," not in pair[1]]  # Gradio knows one part
+            heard = [pair for pair in heard if pair[0] != b"range" or _RANGE.fullmatch(pair[1])]
             scope = {**scope, "path": path, "raw_path": path.encode(), "headers": heard}
             await self._pass(exchange, scope, receive)
         except ClientDisconnect:  # in the middle of a body: there is nobody to answer
@@ -133,8 +133,6 @@ class Guard:
         scope["state"] = {**scope.get("state", {}), "visitor": visitor, "reference": exchange.reference}
         PERSON.set(visitor.person)
         SENDER.set((visitor.account or visitor.person, SENDER.get()[1]))
-        answers = f"{scope['path']}/".startswith(_ANSWERS)
-        self.lab.sending += answers
         try:
             await self.app(scope, exchange.body or receive, exchange.answer)
         except Exception as error:
@@ -142,8 +140,6 @@ class Guard:
                 if is_upload(exchange.path) and isinstance(error, _BY_A_BAD_FORM):
                     raise Refused(400, BAD_UPLOAD, "bad body") from error
                 raise
-        finally:
-            self.lab.sending -= answers
         await exchange.finish()
 
     def _refusal_of(self, error: Exception, exchange: Exchange) -> Refused:
@@ -215,8 +211,10 @@ class Guard:
         path, address = scope["path"], (scope.get("client") or ("127.0.0.1", 0))[0]
         host = headers.get(b"host", b"").decode("latin-1").lower()
         base = f"{scope['scheme']}://{host}{self.settings.root_path}/"
-        nobody = Visitor(f"address {network_of(address)}", "", exchange.reference, base)
+        network = network_of(address)
+        nobody = Visitor(f"address {network}", "", exchange.reference, base)
         if path in _WATCHED:  # they answer while everything else waits
+            self.quotas.gets.take(f"watching {network}")
             return nobody
         try:
             find = partial(find_visitor, self.settings, self.lab.accounts, scope, nobody)

@@ -103,6 +103,6 @@ def _validated(value: Any, declared: TypeAdapter[Any], component: Any) -> Any:
     except ValidationError:
         name = component.label or type(component).__name__
         sentence = f"“{name}” does not take such a value: reload the page, or see /gradio_api/info."
-        if isinstance(component, gr.File | gr.UploadButton):
+        if isinstance(component, gr.File):
             sentence = _FOREIGN
         raise Refused(400, sentence, "forged") from None

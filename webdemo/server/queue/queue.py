@@ -1,6 +1,6 @@
 """The run queue: the person served least goes first.
 
-Runs of one model group go to one worker; :mod:`webdemo.server.queue.turns` decides the order. Where a run takes long, a
+Runs of one model go to one worker; :mod:`webdemo.server.queue.turns` decides the order. Where a run takes long, a
 spare worker does much shorter ones of other people beside it.
 """
 
@@ -29,8 +29,6 @@ PATIENCE = 5.0
 """Seconds after which a run takes long."""
 SHORTER = 8.0
 """Times as much work as a run that is much shorter has a long one; the largest takes minutes, a usual one seconds."""
-MAX_GROUPS = 8
-"""Model groups with workers of their own; further ones share them."""
 
 
 class FairQueue:
@@ -162,7 +160,7 @@ class FairQueue:
 
     def _enter(self, session: str, request: Any, who: Visitor) -> Job:
         token, person = CancelToken(self.seconds), who.person
-        job = Job(person, request, group="", cost=units(request), address=who.address, token=token)
+        job = Job(person, request, cost=units(request), address=who.address, token=token)
         with self._change:
             if self._stopping:
                 raise InputError("The server is stopping: send this again in a minute.")
@@ -174,23 +172,16 @@ class FairQueue:
             except OverQuota as over:
                 self.figures.refused.labels(f"queue of {over.whose}").inc()
                 raise
-            job.group = self._group(job.model)
+            if job.model not in self._workers:
+                self._workers.add(job.model)
+                for _ in range(self.workers + 1):
+                    threading.Thread(target=self._work, args=(job.model,), daemon=True).start()
             running = [(job.person, job.cost) for job in self._running]
             self._accounts.meet(person, {job.person for job in (*self._waiting, *self._running)}, running)
             self._sessions[session] = job.token
             self._waiting.append(job)
             self._change.notify_all()
         return job
-
-    def _group(self, name: str) -> str:
-        """The model group of a method; starts its workers if needed."""
-        if name not in self._workers and len(self._workers) >= MAX_GROUPS:
-            name = min(self._workers)
-        if name not in self._workers:
-            self._workers.add(name)
-            for _ in range(self.workers + 1):
-                threading.Thread(target=self._work, args=(name,), name=f"worker {name}", daemon=True).start()
-        return name
 
     def _watch(self, job: Job) -> Iterator[Progress | Result]:
         while True:
@@ -216,20 +207,20 @@ class FairQueue:
                 return
 
     def _place(self, job: Job) -> tuple[int, float | None]:
-        """A waiting run's place in its group's queue, from 1, and the seconds until it starts, if they are known; the
+        """A waiting run's place in its model's queue, from 1, and the seconds until it starts, if they are known; the
         caller holds the lock."""
-        mine = [other for other in self._waiting if other.group == job.group]
+        mine = [other for other in self._waiting if other.model == job.model]
         before = list(takewhile(lambda other: other is not job, in_turn(mine, self._accounts.served)))
-        running = [other for other in self._running if other.group == job.group]
+        running = [other for other in self._running if other.model == job.model]
         ahead = sum(other.cost for other in before)
-        return len(before) + 1, self.paces[job.group].wait(ahead, running, self.workers)
+        return len(before) + 1, self.paces[job.model].wait(ahead, running, self.workers)
 
     # ---- the workers -----------------------------------------------------------------------------
 
-    def _work(self, group: str) -> None:
+    def _work(self, model: str) -> None:
         while True:
             with self._change:
-                while (job := self._next(group)) is None:
+                while (job := self._next(model)) is None:
                     if self._stopping:
                         return
                     self._change.wait(TICK if self._waiting else None)
@@ -246,13 +237,13 @@ class FairQueue:
                     self._rested = time.monotonic()
                     self._change.notify_all()
             if whole:
-                self.paces[group].learn(job.cost, time.monotonic() - job.started)
+                self.paces[model].learn(job.cost, time.monotonic() - job.started)
             self.figures.stage_seconds.labels(job.model, "queue").observe(job.started - job.came)
 
-    def _next(self, group: str) -> Job | None:
+    def _next(self, model: str) -> Job | None:
         self._waiting = [job for job in self._waiting if not job.token.cancelled]
-        mine = [job for job in self._waiting if job.group == group]
-        busy = [job for job in self._running if job.group == group]
+        mine = [job for job in self._waiting if job.model == model]
+        busy = [job for job in self._running if job.model == model]
         if len(busy) >= self.workers:
             work, people = min(job.cost for job in busy) / SHORTER, {job.person for job in busy}
             late = len(busy) == self.workers and time.monotonic() - max(job.started for job in busy) > PATIENCE

@@ -26,7 +26,6 @@ class Job:
 
     Attributes:
         person: its owner.
-        group: the model group whose worker runs it.
         cost: its work, in units.
         events: progress, then a result or an error; read by the caller.
         moved: when it last began or made progress.
@@ -34,7 +33,6 @@ class Job:
 
     person: str
     request: Any
-    group: str
     cost: float
     address: str = ""
     token: CancelToken = field(default_factory=CancelToken)
@@ -128,7 +126,7 @@ def units(request: Any) -> float:
 
 @dataclass
 class Pace:
-    """Seconds per unit of work of a model group, learned from finished runs; None before the first."""
+    """Seconds per unit of work of a model, learned from finished runs; None before the first."""
 
     seconds_a_unit: float | None = None
 
@@ -143,8 +141,8 @@ class Pace:
 
         Args:
             ahead: units of the runs before it.
-            running: runs of its group.
-            workers: number of runs of the group at a time.
+            running: runs of its model.
+            workers: number of runs of the model at a time.
         """
         if self.seconds_a_unit is None:
             return None

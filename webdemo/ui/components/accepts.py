@@ -56,12 +56,12 @@ SentPaths: TypeAlias = Annotated[list[SentPath], Field(default_factory=list)]
 _OF_GRADIO: dict[type, TypeAdapter[Any]] = {
     gr.Textbox: TypeAdapter(Text | None),
     gr.Number: TypeAdapter(Finite | None),
-    gr.Slider: TypeAdapter(Finite | None),
+    gr.Slider: TypeAdapter(Finite),
     gr.Checkbox: TypeAdapter(Flag | None),
     gr.State: TypeAdapter(None),
-    gr.File: TypeAdapter(Upload | list[Upload] | None),
-    gr.UploadButton: TypeAdapter(Upload | list[Upload] | None),
+    gr.File: TypeAdapter(Upload | None),
 }
+_FILES: TypeAdapter[Any] = TypeAdapter(list[Upload] | None)
 _BY_DEFAULT: TypeAdapter[Any] = TypeAdapter(Scalar | None)
 
 
@@ -69,6 +69,8 @@ def accepts(component: Any) -> TypeAdapter[Any]:
     """The type of the component's value; a text, a number or null where nothing is declared."""
     if (declared := getattr(type(component), "accepts", None)) is not None:
         return declared
+    if getattr(component, "file_count", "single") != "single":
+        return _FILES
     return next((_OF_GRADIO[kind] for kind in type(component).__mro__ if kind in _OF_GRADIO), _BY_DEFAULT)
 
 
