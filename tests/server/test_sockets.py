@@ -15,6 +15,7 @@ import httpx
 import pytest
 
 from tests.server.clients import wait_for
+from webdemo.server.http import connections
 from webdemo.server.serve import FILES, with_room_for_files
 from webdemo.server.settings import Settings
 from webdemo.server.store.scratch import UPLOADS as KEPT
@@ -142,7 +143,12 @@ def test_answers_that_nobody_reads_are_ended(served: tuple[str, int]) -> None:
 
 
 def test_broken_http_is_refused(served: tuple[str, int]) -> None:
-    for text in (b"NOT HTTP AT ALL\r\n\r\n", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: a\r\n b\x00\r\n\r\n"):
+    first = b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+    for text in (
+        b"NOT HTTP AT ALL\r\n\r\n",
+        first + b"X: a\r\n b\x00\r\n\r\n",
+        first + b"X: a\r\n" * connections.HEAD_LINES + b"\r\n",
+    ):
         with socket.create_connection(served, timeout=30) as broken:
             broken.sendall(text)
             assert b" 400 " in broken.recv(4096)

@@ -18,18 +18,24 @@ from webdemo.server.settings import Settings
 
 HEAD_BYTES = 32 * 1024
 """Most bytes of a request's head."""
+HEAD_LINES = 100
+"""Most lines of a request's head; each takes 10 µs."""
 PIECES, PIECE_BYTES = 200, 512
 """Pieces of a body that may be of any size, and the bytes that all further ones must have on average: reading a piece
 takes 11 µs, so in pieces of one byte a few megabits a second would keep the server from doing anything else."""
 
 
 class BoundedPieces(h11.Connection):
-    """A connection that fails where a body comes in pieces that are too small."""
+    """A connection that fails where a head has too many lines or a body comes in pieces that are too small."""
 
     pieces = 0.0
 
     def next_event(self) -> Any:
-        """The next event; raises RemoteProtocolError for the piece that is too much."""
+        """The next event; raises RemoteProtocolError for the line or the piece that is too much."""
+        if self.their_state is h11.IDLE:
+            head, _, _ = self.trailing_data[0].partition(b"\r\n\r\n")
+            if head.count(b"\n") > HEAD_LINES:
+                raise h11.RemoteProtocolError("The request has too many headers.")
         event = super().next_event()
         if isinstance(event, h11.Request):
             self.pieces = 0.0

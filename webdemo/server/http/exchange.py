@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
+import random
 import time
-import uuid
 from collections.abc import Sequence
 from typing import Any
 
@@ -70,7 +70,7 @@ class Exchange:
         self.scope, self._send, self._root = scope, send, root
         self._frame_sites = frame_sites
         self.path = ""
-        self.reference = uuid.uuid4().hex[:12]
+        self.reference = f"{random.getrandbits(48):012x}"
         self.headers: dict[bytes, bytes] = dict(scope["headers"])
         self.status, self.first_byte = 0, 0.0
         self.body: BoundedBody | None = None
