@@ -20,7 +20,8 @@ from .accounts import Accounts
 from .visitors import KNOWN_COOKIE, SESSION_COOKIE, YEAR, set_cookie
 
 AT_ONCE = 2
-"""Passwords that are checked at a time, so that guesses cannot take all memory and cores; further ones wait."""
+"""Passwords that are checked at a time, so that guesses cannot take all memory and cores; further ones wait. One more
+is that of a browser in which somebody has signed in before, which waits for no guess of strangers."""
 WRONG = "The name or the password is wrong: try again."
 
 
@@ -28,7 +29,7 @@ def login_routes(settings: Settings, accounts: Accounts) -> APIRouter:
     """``/login`` (the page, and POST for it and for gradio_client) and ``/logout``."""
     router = APIRouter()
     root = settings.root_path
-    places = CapacityLimiter(AT_ONCE)
+    places, known_places = CapacityLimiter(AT_ONCE), CapacityLimiter(1)
 
     def page(wanted: str, *, name: str = "", error: str = "", status: int = 200) -> HTMLResponse:
         body = sign_in_card(action=f"{root}/login", wanted=wanted, name=name[:40], error=error)
@@ -53,7 +54,7 @@ def login_routes(settings: Settings, accounts: Accounts) -> APIRouter:
         address, name = network_of(request.client.host if request.client else ""), username.strip().lower()
         known = request.cookies.get(KNOWN_COOKIE, "")
         admitted = await run_in_threadpool(accounts.admit, name, address, known)  # who is refused waits for nobody
-        token = await run_sync(accounts.begin, admitted, password, limiter=places)
+        token = await run_sync(accounts.begin, admitted, password, limiter=known_places if admitted[2] else places)
         if token is None:
             if in_browser:
                 return page(_own_path(next), name=username, error=WRONG, status=401)

@@ -56,7 +56,8 @@ def find_visitor(settings: Settings, accounts: Accounts, scope: Scope, nobody: V
         elif not settings.accounts:
             raise Refused(401, _NOT_BY_PROXY, "proxy")
         else:
-            account = accounts.person(cookies.get(SESSION_COOKIE, ""))
+            token = cookies.get(SESSION_COOKIE, "")
+            account = accounts.person(token) if token else None
         if account is None:
             return None
         return replace(nobody, person=account.owner, owner=account.owner, account=account.name)

@@ -22,7 +22,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from motion import InputError
 from webdemo.server.accounts.quotas import OverQuota, Quota, network_of
-from webdemo.server.accounts.visitors import VISITOR_COOKIE, YEAR, find_visitor, new_token, set_cookie
+from webdemo.server.accounts.visitors import SESSION_COOKIE, VISITOR_COOKIE, YEAR, find_visitor, new_token, set_cookie
 from webdemo.server.audit import SENDER
 from webdemo.server.lab import Lab
 from webdemo.server.logs import REFERENCE
@@ -218,8 +218,9 @@ class Guard:
             return nobody
         try:
             find = partial(find_visitor, self.settings, self.lab.accounts, scope, nobody)
-            # It looks into the database where people have accounts.
-            visitor = await run_in_threadpool(find) if self.settings.sign_in else find()
+            # Whom a cookie or a proxy names, the database knows.
+            named = SESSION_COOKIE.encode() in headers.get(b"cookie", b"") or self.settings.proxy_user
+            visitor = await run_in_threadpool(find) if self.settings.sign_in and named else find()
         except (Refused, SQLAlchemyError) as error:
             if not (isinstance(error, Refused) and error.reason == "proxy" and needs_no_sign_in(path)):
                 raise
