@@ -48,14 +48,8 @@ from .settings import Settings
 
 log = logging.getLogger(__name__)
 
-CLEAN_EVERY = 900.0
-"""Seconds between two cleanings of the history."""
-SWEEP_EVERY = 5.0
-"""Seconds between two looks for idle live streams."""
 TIDY_EVERY = 60.0
 """Seconds between two cleanings of temporary files."""
-GIVE_BACK_EVERY = 5.0
-"""Seconds between two returns of unused memory to the system."""
 PAGES = 256
 """Most sessions whose state is kept; Gradio's default of 10,000 would take gigabytes."""
 MOST_FILES = 16
@@ -161,10 +155,10 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     tasks = [
         asyncio.create_task(_later(WARM_UP_AFTER, lab.health.keep_looking)),
         asyncio.create_task(_later(2 * WARM_UP_AFTER, _read_first)),
-        asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
+        asyncio.create_task(_every(900.0, lab.history.clean)),
         asyncio.create_task(_every(TIDY_EVERY, app.state.tidy)),
-        asyncio.create_task(_every(GIVE_BACK_EVERY, lambda: give_back(resting=not lab.busy))),
-        asyncio.create_task(_every(SWEEP_EVERY, lab.streams.sweep)),
+        asyncio.create_task(_every(5.0, lambda: give_back(resting=not lab.busy))),
+        asyncio.create_task(_every(5.0, lab.streams.sweep)),
     ]
     if lab.settings.exit_when_stuck:
         tasks.append(asyncio.create_task(watch(lab.health.stuck)))

@@ -10,7 +10,7 @@ import ipaddress
 import os
 import tempfile
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 from pydantic import Field, ValidationError
 from pydantic_settings import (
@@ -103,9 +103,6 @@ class Settings(BaseSettings):
     )
     publish_days: float = Field(
         30, ge=0, le=3650, description="days for which a public page lasts at most; 0: no public pages"
-    )
-    frame_sites: list[Annotated[str, Field(pattern=r"^(\*|https?://[\w.*-]+(:\d+)?)$")]] = Field(
-        ["*"], description="sites that may show the player of a public page in a frame, as https://lab.example"
     )
     free_megabytes: float = Field(100, ge=0, description="free disk space below which runs and uploads are refused")
     scratch_megabytes: float = Field(2000, gt=0, description="total size of all people's uploads and download files")

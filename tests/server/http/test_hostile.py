@@ -112,7 +112,7 @@ def test_whoever_is_refused_is_answered_once_a_second(
     with httpx.Client(base_url=f"http://{host}:{port}", headers=headers, timeout=30) as client:
         while client.post(path).status_code != status:
             pass
-    monkeypatch.setattr(exchange, "BACK_OFF", 1.0)
+    monkeypatch.setattr(exchange, "BACK_OFF", 0.5)
     with ThreadPoolExecutor(connections) as greedy:
         list(greedy.map(ask, [time.monotonic() + seconds] * connections))
     assert 0 < len(refused) <= connections * (1 + seconds / exchange.BACK_OFF)

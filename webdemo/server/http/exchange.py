@@ -6,7 +6,6 @@ import asyncio
 import json
 import random
 import time
-from collections.abc import Sequence
 from typing import Any
 
 from starlette.datastructures import MutableHeaders
@@ -16,7 +15,7 @@ from starlette.types import Message, Receive, Scope, Send
 from webdemo.server.settings import on_a_space
 
 from .error_pages import message_card
-from .routes import NOTHING, Refused, is_embed, is_public_page, is_upload
+from .routes import EMBED, NOTHING, Refused, is_public_page, is_upload
 
 _FROM_HERE = (
     "default-src 'none'",
@@ -40,10 +39,10 @@ _PUBLIC_POLICY = (*_FROM_HERE, "script-src 'self' 'unsafe-eval' blob:", "form-ac
 """That of public pages, which run no script within the page and send nothing; drawing by WebGL compiles."""
 _NOT_FRAMED = "frame-ancestors 'self'"
 """Not on a Space, which shows its page in a frame."""
-_NOBODY = "'none'"
 BACK_OFF = 1.0
-"""Seconds before anybody is told of a mistake of theirs. A program would ask again at once, and to refuse costs as much
-as to serve: so a connection that does nothing else costs one refusal a second."""
+"""Seconds before anybody is told of a mistake of theirs, and a quarter of those before they are told that they ask too
+often. A program would ask again at once, and to refuse costs as much as to serve: so a connection that does nothing
+else costs one refusal in that time."""
 BAD_UPLOAD = "The upload cannot be read: choose the file again."
 
 
@@ -54,7 +53,6 @@ class Exchange:
         scope: the request's.
         send: where the answer goes.
         root: path under which the page is.
-        frame_sites: sites that may show the player of a public page in a frame.
 
     Attributes:
         reference: the request's id.
@@ -66,9 +64,8 @@ class Exchange:
         path: below ``root``; "" until the guard has read it.
     """
 
-    def __init__(self, scope: Scope, send: Send, *, root: str, frame_sites: Sequence[str] = ()) -> None:
+    def __init__(self, scope: Scope, send: Send, *, root: str) -> None:
         self.scope, self._send, self._root = scope, send, root
-        self._frame_sites = frame_sites
         self.path = ""
         self.reference = f"{random.getrandbits(48):012x}"
         self.headers: dict[bytes, bytes] = dict(scope["headers"])
@@ -125,7 +122,7 @@ class Exchange:
     async def _pass_on(self, message: Message) -> None:
         if message["type"] == "http.response.start":
             if 400 <= message["status"] < 500:
-                await asyncio.sleep(BACK_OFF)
+                await asyncio.sleep(BACK_OFF * (4 if message["status"] == 429 else 1))
             self.status, self.first_byte = message["status"], self.seconds
             self._dress(MutableHeaders(scope=message))
         await self._send(message)
@@ -140,8 +137,8 @@ class Exchange:
 
     def _policy(self) -> tuple[str, ...]:
         """The content security policy of the answer."""
-        if is_embed(self.path):
-            return *_PUBLIC_POLICY, f"frame-ancestors {' '.join(self._frame_sites) or _NOBODY}"
+        if self.path.startswith(EMBED):
+            return *_PUBLIC_POLICY, "frame-ancestors *"
         policy = _PUBLIC_POLICY if is_public_page(self.path) else _POLICY
         return policy if on_a_space() else (*policy, _NOT_FRAMED)
 

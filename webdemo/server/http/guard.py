@@ -89,7 +89,7 @@ class Guard:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        exchange = Exchange(scope, send, root=self.settings.root_path, frame_sites=self.settings.frame_sites)
+        exchange = Exchange(scope, send, root=self.settings.root_path)
         REFERENCE.set(exchange.reference)
         address = (scope.get("client") or ("", 0))[0]
         SENDER.set(("", address))

@@ -6,7 +6,9 @@ import re
 
 PUBLIC = ("/login", "/logout", "/healthz", "/metrics")
 """Paths that need no sign-in; /metrics has its own rule."""
-_PUBLIC_PAGES = ("/share/", "/embed/")
+EMBED = "/embed/"
+"""Path of pages that other sites may show in a frame."""
+_PUBLIC_PAGES = ("/share/", EMBED)
 _SHOWN = "/shown/"
 """Path of the files that public pages load."""
 API = "/gradio_api/"
@@ -41,11 +43,6 @@ def path_below(root: str, path: str, query: bytes) -> str:
 def is_public_page(path: str) -> bool:
     """True for pages that need no sign-in since their address is a secret."""
     return path.startswith(_PUBLIC_PAGES)
-
-
-def is_embed(path: str) -> bool:
-    """True for pages that other sites may show in a frame."""
-    return path.startswith("/embed/")
 
 
 def needs_no_sign_in(path: str) -> bool:

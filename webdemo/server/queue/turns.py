@@ -7,6 +7,7 @@ runs.
 
 from __future__ import annotations
 
+import math
 import queue
 import time
 from collections import Counter
@@ -82,26 +83,26 @@ class Accounts:
         self.served[person] = self.served.get(person, 0.0) + units
 
 
-def least_served(waiting: Iterable[Job], served: Mapping[str, float]) -> Job | None:
-    """The first run of the person who has been served least; None if nothing waits.
+def next_job(
+    waiting: Sequence[Job], served: Mapping[str, float], running: Iterable[Job] = (), most: float = math.inf
+) -> Job | None:
+    """The first run of the person who has been served least; None if nothing waits that may begin.
 
     Args:
         waiting: runs in order of arrival.
         served: units of work by person.
+        running: runs.
+        most: running runs of a person.
     """
-    return min(waiting, key=lambda job: served.get(job.person, 0.0), default=None)
-
-
-def next_job(waiting: Sequence[Job], served: Mapping[str, float], running: Iterable[Job], most: int) -> Job | None:
-    """As :func:`least_served`, of people who have fewer than ``most`` running runs."""
     busy = Counter(job.person for job in running)
-    return least_served((job for job in waiting if busy[job.person] < most), served)
+    able = (job for job in waiting if busy[job.person] < most)
+    return min(able, key=lambda job: served.get(job.person, 0.0), default=None)
 
 
 def in_turn(waiting: Sequence[Job], served: Mapping[str, float]) -> Iterator[Job]:
     """Waiting runs in the order in which they will run, if nobody else comes."""
     left, accounts = list(waiting), dict(served)
-    while job := least_served(left, accounts):
+    while job := next_job(left, accounts):
         left.remove(job)
         accounts[job.person] = accounts.get(job.person, 0.0) + job.cost
         yield job
