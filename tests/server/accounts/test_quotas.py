@@ -105,14 +105,15 @@ def test_a_subscriber_is_one_network(address: str, network: str) -> None:
 
 
 def test_all_addresses_of_a_subscriber_share_one_rate(tmp_path: Path) -> None:
-    """On an open server nobody gets more requests by a new address in their own network for each."""
+    """On an open server nobody gets more requests by a new cookie and a new address in their own network for each."""
     settings = settings_for(tmp_path, open=True, rate=10, address_people=2)
     app = create_app(settings, engine=stub_module().StubEngine())
     statuses = []
     with TestClient(app):
         for i in range(30):
             one = TestClient(app, base_url=HERE, client=(f"2001:db8:1:2::{i + 1:x}", 5))
-            statuses.append(one.post("/gradio_api/reset", json={"event_id": "x"}).status_code)
+            cookie = {"cookie": f"pasdedeux_visitor={i:032}"}
+            statuses.append(one.post("/gradio_api/reset", json={"event_id": "x"}, headers=cookie).status_code)
         other = TestClient(app, base_url=HERE, client=("2001:db8:1:3::1", 5))
         assert other.post("/gradio_api/reset", json={"event_id": "x"}).status_code != 429
     assert 10 <= statuses.count(429) <= 20

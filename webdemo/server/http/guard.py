@@ -286,13 +286,9 @@ class Guard:
         except InputError as error:
             raise Refused(507, str(error), "room") from None
 
-    def _endpoint(self, path: str) -> int | None:
-        """The function that a path names; None if it names none."""
-        way, _, name = path[len(API) :].partition("/")
-        return self.payloads.number_of(name.partition("/")[0]) if way in ("call", "run", "api") else None
-
     def _check_call(self, body: bytes, visitor: Visitor, path: str) -> None:
-        endpoint = self._endpoint(path)
+        way, name, *_ = f"{path[len(API) :]}/".split("/")
+        endpoint = self.payloads.number_of(name) if way in ("call", "run", "api") else None
         if not body:
             return
         if sum(map(body.count, (b"[", b"{", b","))) > _MOST_VALUES:  # each weighs far more once it is read

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import gc
 import logging
-import sys
 import threading
 import time
 from collections.abc import Callable
-from resource import RUSAGE_SELF, getrusage
 from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
@@ -174,8 +172,6 @@ class Figures:
         )
         self.errors = Counter("pasdedeux_errors", "Errors that are not the user's", ["kind"], registry=registry)
         self.refused = Counter("pasdedeux_refused", "Requests refused", ["reason"], registry=registry)
-        unit = 1 if sys.platform == "darwin" else 1024
-        self.watch("memory_peak_bytes", "Most memory so far", lambda: getrusage(RUSAGE_SELF).ru_maxrss * unit)
 
     def watch(self, name: str, documentation: str, value: Callable[[], float]) -> None:
         """Adds a gauge whose value is taken whenever the figures are read."""
