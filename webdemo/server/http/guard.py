@@ -302,7 +302,7 @@ class Guard:
             fields.pop("fn_index", None)  # Gradio calls what the address names
         if (endpoint is not None or path.startswith(f"{API}queue/join")) and fields.get("data") is None:
             fields["data"] = []  # as many values as a function without inputs takes
-        self.payloads.check(fields, endpoint, visitor.person)
+        self.payloads.check(fields, endpoint, visitor.person, brief=path.startswith(f"{API}call/"))
         session, event = fields.get("session_hash"), fields.get("event_id")
         if session is not None:
             self.bindings.check(session, visitor.person, visitor.source, begin=True)

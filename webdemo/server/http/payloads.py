@@ -30,7 +30,7 @@ class Payloads:
     """
 
     def __init__(self, page: Blocks) -> None:
-        self._inputs = {number: list(fn.inputs) for number, fn in page.fns.items()}
+        self._inputs = {number: list(fn.inputs) for number, fn in page.fns.items() if fn.fn is not None}
         self._numbers = {str(fn.api_name): number for number, fn in page.fns.items() if fn.api_visibility == "public"}
         self._events = {
             number: [page.blocks[target] for target, _ in fn.targets if target is not None]
@@ -44,13 +44,14 @@ class Payloads:
             raise Refused(404, "There is no endpoint of this name: see /gradio_api/info.", "forged")
         return self._numbers[endpoint]
 
-    def check(self, fields: dict[str, Any], endpoint: int | None, person: str) -> None:
+    def check(self, fields: dict[str, Any], endpoint: int | None, person: str, *, brief: bool = False) -> None:
         """Raises Refused for a call that the page's own components would not make.
 
         Args:
             fields: the request's body.
             endpoint: the function that its address names, if it does.
             person: who sends it; files must be theirs.
+            brief: whether what is kept for a program may be left out.
         """
         try:
             json.dumps(fields, ensure_ascii=False).encode()
@@ -63,17 +64,17 @@ class Payloads:
             raise Refused(404, "The page has no such function: reload it.", "forged")
         if fields.get("batched"):
             raise Refused(400, "Batched calls are not supported: send one call at a time, without batched.", "forged")
-        self._check_data(fields.get("data"), function, person)
+        self._check_data(fields.get("data"), function, person, brief)
         for component in self._events.get(function, ()) if function is not None else ():
             _validated(fields.get("event_data"), accepts_event(component), component)
 
-    def _check_data(self, data: Any, function: int | None, person: str) -> None:
+    def _check_data(self, data: Any, function: int | None, person: str, brief: bool) -> None:
         if data is None:
             return
         if not isinstance(data, list):
             raise Refused(400, "The data of a call is a list of values.", "bad body")
         inputs = self._inputs[function] if function is not None else []
-        if len(inputs) != len(data):  # programs leave out what is kept for them
+        if brief and len(inputs) != len(data):
             inputs = [block for block in inputs if not block.skip_api]
         if len(inputs) != len(data):
             raise Refused(
