@@ -58,6 +58,7 @@ class Entry(BaseModel):
         seconds: how long it usually takes.
         stage: its score; empty leaves it to the network's words.
         refused: what is then shown of a refusal, which leaves the act itself undone.
+        reaction: what the other does at it, where the words say nothing that they do.
         rule: predicates of :mod:`motion.metrics.sentences` that its motion fulfils, with ``who`` for the agent and
             ``whom`` for the patient.
         shown: False for what no body shows ("falls in love", "turns on the lamp"): it is known, and stays unread.
@@ -84,6 +85,7 @@ class Entry(BaseModel):
     seconds: Annotated[float, Field(gt=0, le=60)] = 3.0
     stage: Annotated[tuple[Shape, ...], Field(max_length=12)] = ()
     refused: Annotated[tuple[Shape, ...], Field(max_length=6)] = ()
+    reaction: Annotated[tuple[Shape, ...], Field(max_length=6)] = ()
     rule: Annotated[tuple[Sentence, ...], Field(max_length=6)] = ()
     to: Literal["", "other"] = ""
     thing: Does = ""

@@ -123,12 +123,14 @@ class Gesture(_Shape):
 
     Attributes:
         times: how many strokes; 0 for as long as the beat lasts.
+        late: seconds after which it begins, of a person who answers the other.
     """
 
     do: Literal["gesture"] = "gesture"
     gesture: Annotated[str, _Named("gestures")]
     sides: Literal["left", "right", "both"] = "right"
     times: Annotated[int, Field(ge=0, le=20)] = 0
+    late: Annotated[float, Field(ge=0, le=3)] = 0.0
 
 
 class Touch(_Shape):
@@ -155,11 +157,12 @@ class Touch(_Shape):
 class Hold(_Shape):
     """Both in a hold while they go round: "closed" as in a waltz, a "ring" with both hands joined, or a "twirl".
 
-    Two whose "palms" are against each other's lean in and stay where they are; a "couple" dances as recorded ones do.
+    Two whose "palms" are against each other's lean in and stay where they are, as those in an "embrace" do; a "couple"
+    dances as recorded ones do.
     """
 
     do: Literal["hold"] = "hold"
-    hold: Literal["closed", "ring", "twirl", "palms", "couple"]
+    hold: Literal["closed", "ring", "twirl", "palms", "embrace", "couple"]
 
 
 class Link(_Shape):

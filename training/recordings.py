@@ -63,8 +63,9 @@ TOGETHER, JOINED = 360, 0.25
 """Frames of a dance of two, and metres between two hands that are joined in it."""
 NECK = SMPL22.index("neck")
 WRISTS, SHOULDERS = ([SMPL22.index(f"{side}_{j}") for side in SIDES] for j in ("wrist", "shoulder"))
-LEANS, RAISED = 0.25, 0.1
-"""Metres of the neck beside the pelvis, at most, and of a waving hand over the shoulder, at least."""
+LEANS, RAISED, REACHED = 0.25, 0.1, 0.5
+"""Metres of the neck beside the pelvis, at most, of a waving hand over the shoulder, at least, and of the wrist of
+somebody who stands by beside the pelvis, at most."""
 
 
 def lively(positions: Array) -> bool:
@@ -152,7 +153,8 @@ def bystanders(clips: Sequence[SourceClip]) -> Iterator[tuple[str, Array]]:
     for i, clip in enumerate(clips):
         for start in range(0, len(clip.positions) - PIECE + 1, PIECE) if clip.dataset == "reactidle" else ():
             piece = clip.positions[start : start + PIECE]
-            if lively(piece):
+            out = np.linalg.norm((piece[:, WRISTS] - piece[:, :1])[..., [0, 2]], axis=-1)
+            if lively(piece) and out.max() < REACHED:
                 yield f"{clip.source}_{i}_{start}", canonicalize(piece)
 
 

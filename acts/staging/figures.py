@@ -28,7 +28,7 @@ from motion.vectors import Array
 
 from .figure_floor import grounded_poses
 from .places import Way2D
-from .poses import ALL, HANDS, JOINT, LOWER, TRUNK, Pose, all_but
+from .poses import ALL, HANDS, JOINT, LOWER, TRUNK, UPRIGHT, Pose, all_but
 from .postures import RISING, posture_joints, postures
 from .recordings import LEGS, has_takes, performing, standing_by
 from .score import Change, Score
@@ -227,6 +227,8 @@ def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Arra
     who, score = "ab"[person], scores[beat.window.beat]
     frames, poses = _figure(score, person, beat, first, seed)
     shown = np.isin(frames, beat.shown(frames))
+    if last is not None and last[0, 1] <= UPRIGHT and len(poses) and poses[:, 0, 1].min() <= UPRIGHT:
+        shown &= poses[:, 0, 1] <= UPRIGHT  # who is down already does not get up before it
     listed, at, poses = score.bodily(who), frames[shown], poses[shown]
     figure, taken = listed[0], has_takes(listed[0].figure)
     moved = set(_OF_HEAD) if taken else _moved(listed)

@@ -14,8 +14,9 @@ import numpy as np
 from motion import FPS
 from motion.vectors import Array, bearing, direction, travelled, wrapped
 
-from .places import EASE, MOST, TURNING, Standing, Track, Way2D, between, eased, sampled, smoothed
-from .score import Move, Way
+from .places import ABEAM, EASE, MOST, TURNING, Standing, Track, Way2D, between, eased, sampled, smoothed
+from .score import DODGES, IN_PLACE, Move, Way
+from .window import REACHES
 
 CLOSE = 0.9
 """Metres from each other at which people who walk up to each other are left to the network."""
@@ -27,8 +28,6 @@ LINKED = 0.6
 """Metres between two people who walk hand in hand or arm in arm."""
 BEHIND = 1.2
 """Metres by which one follows the other."""
-ABEAM = 0.3
-"""Cosine of the angle between where somebody faces and where the other is, below which they cannot walk past them."""
 ASIDE = 0.7
 """Metres beside the other at which one walks past."""
 ACROSS = 1.3
@@ -79,7 +78,7 @@ def plan(
         for i in range(2)
     ]
     own = [[move for move in moves if move.person == person] for person in "ab"]
-    for who in (0, 1) if not any(m.way in ("after", "face") for m in own[0]) else (1, 0):
+    for who in (0, 1) if not any(m.way in ("after", "face", *DODGES) for m in own[0]) else (1, 0):
         _walked(who, own, tracks, standing)
     if first:
         for who, track in enumerate(tracks):
@@ -107,6 +106,8 @@ def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[Track], st
         seconds /= _WEIGHT.get(move.way, 1.0) + sum(_WEIGHT.get(way, 1.0) for way in later)
         if move.until:
             seconds *= 0.55
+        if move.way in IN_PLACE and later and later[0] in DODGES and tracks[1 - who].dense:  # they are touched first
+            seconds = (max(tracks[1 - who].dense) + REACHES) / FPS
         _moved(move, who, tracks, standing, theirs, seconds, last=not later)
     if track.frame and listed and listed[-1].way in ("away", "back", "past", "around", "along"):
         track.stay()
@@ -155,10 +156,13 @@ def _moved(
         case "away":
             _away(move, track, gap, to, seconds, both=both, followed="after" in theirs)
         case "back" | "aside":
+            track.halt(standing.speeds[who])
+            here, seconds = track.place, min(seconds, track.left())
             far = min(move.metres, move.speed * seconds) if move.metres else min(BACKWARDS, 0.6 * seconds)
             step = -far * to if move.way == "back" else move.sense * SIDESTEP * np.array([to[1], -to[0]])
             taken = min(seconds, max(1.3, float(np.linalg.norm(step)) / move.speed + EASE))
-            track.walk(np.stack([here, here + step]), taken, heading=bearing(to))
+            faces = bearing(to) if direction(track.heading) @ to > -ABEAM else track.heading  # or pushed from behind
+            track.walk(np.stack([here, here + step]), taken, heading=faces)
             track.stay(facing=True, seconds=None if last else 0.2)
         case "past":
             _past(move, track, other, to, seconds)

@@ -23,7 +23,7 @@ from motion.skeleton import SIDES
 from motion.transforms import heading_matrix
 from motion.vectors import Array, floor_points, unit
 
-from .places import EVENLY
+from .places import ABEAM, EVENLY
 from .poses import JOINT, upright
 from .recordings import performance
 from .score import Move, Score
@@ -50,7 +50,7 @@ class Stroke:
         sinks: the hand sinks again before the beat ends; others are held as long as it lasts.
         in_time: two people make it in one time.
         on: "head", "trunk" or "hands": the part of one's own body that the hand is on. The network is held to it
-            there, and of somebody on their way to the head as well; other gestures are a draft.
+            there, and to where the head is; other gestures are a draft.
     """
 
     at: Place = (0.0, 0.0, 0.0)
@@ -210,7 +210,8 @@ def hand_parts(
             poses, joints = recorded.poses(at / FPS), arms_of(gesture)
             places: Array = poses[:, joints] - poses[:, :1]
         else:
-            joints, at, places = _arms(gesture, person, at, stretch, seed)
+            turned = bool({(person, "turn"), (person, "thing")} & ways)
+            joints, at, places = _arms(gesture, person, at, stretch, seed, turned=turned)
         shown = np.isin(at, stretch.shown(at))
         arms = np.zeros((int(shown.sum()), len(JOINT), 3))
         turns = heading_matrix(stretch.course(person).headings[at[shown]])
@@ -219,7 +220,9 @@ def hand_parts(
         yield replace(part, soft=not GESTURES[gesture.gesture].on)
 
 
-def _arms(gesture: Gesture, person: int, at: Frames, stretch: Stretch, seed: int) -> tuple[list[int], Frames, Array]:
+def _arms(
+    gesture: Gesture, person: int, at: Frames, stretch: Stretch, seed: int, *, turned: bool
+) -> tuple[list[int], Frames, Array]:
     """Joints of a person's arms, frames while they are up, and their places (N, joints, 3) from the pelvis, facing +Z.
 
     Args:
@@ -228,8 +231,9 @@ def _arms(gesture: Gesture, person: int, at: Frames, stretch: Stretch, seed: int
         at: frames of the beat at which the hands are free.
         stretch: the beat.
         seed: draws how late they are.
+        turned: they have turned to a thing, which is before them.
     """
-    late = 0.0 if GESTURES[gesture.gesture].in_time else late_by(seed, person, stretch.frames)
+    late = gesture.late + (0.0 if GESTURES[gesture.gesture].in_time else late_by(seed, person, stretch.frames))
     start = max(int(at[0]) - FIRST, 0)
     length = (stretch.frames - start) / FPS - late
     begins, sinks, _ = _lasts(gesture, length)
@@ -239,9 +243,11 @@ def _arms(gesture: Gesture, person: int, at: Frames, stretch: Stretch, seed: int
     own, other = stretch.course(person), stretch.course(1 - person)
     turns = heading_matrix(own.headings[at])
     towards = np.einsum("nji,nj->ni", turns, unit(floor_points(other.places[at] - own.places[at])))
+    if turned:
+        towards[towards[:, 2] < ABEAM] = [0.0, 0.0, 1.0]
     joints = arms_of(gesture)
     places = [arm(gesture, side, seconds, length, towards) for side in hands_of(gesture)]
-    if GESTURES[gesture.gesture].on == "head" and person in stretch.ways:
+    if GESTURES[gesture.gesture].on == "head":
         stands, head = upright(np.zeros(2), 0.0), JOINT["head"]
         joints.append(head)
         places.append(np.tile(stands[head] - stands[0], (len(at), 1, 1)))

@@ -246,9 +246,8 @@ class _Beat:
     ) -> list[Part]:
         """The ways of the two, and the touches, holds, blows and gestures on them."""
         score, ways, parts = self.score, stretch.ways, list[Part]()
-        hand = None if touch is None else touch_parts(touch, posed, stretch)
-        if hand is not None:
-            parts.append(hand)
+        hands = [] if touch is None else touch_parts(touch, posed, stretch)
+        parts += hands
         if score.pulls:
             lifted = self._postures(1 - "ab".index(score.pulls), stretch)
             parts += pull_parts(score.pulls, lifted, stretch, both=score.by_both_hands)
@@ -260,7 +259,7 @@ class _Beat:
             if gait in _LOW or (gait and free):
                 parts += _gait_parts(gait, way, self.down, score, stretch, self.story.seed)
             else:
-                parts += stretch.known_way(_until_posed(way, hand, stretch))
+                parts += stretch.known_way(_until_posed(way, hands, stretch))
             if alone and not gait:
                 loose = "ab"[person] in score.loose
                 joints = () if loose else all_but(HANDS)
@@ -308,11 +307,11 @@ class _Beat:
         return roomy(stand, poses, self.down, first=not self.start)
 
 
-def _until_posed(way: Way2D, hand: KnownFrames | None, stretch: Stretch) -> Way2D:
+def _until_posed(way: Way2D, hands: Sequence[KnownFrames], stretch: Stretch) -> Way2D:
     """A way, up to where the same person kneels down to what they touch: from then on poses say where they are."""
-    if hand is None or hand.person != way.person or 0 not in hand.joints:
+    if not hands or hands[0].person != way.person or 0 not in hands[0].joints:
         return way
-    return way.only(np.asarray(stretch.in_window(way.frames)) < min(hand.frames))
+    return way.only(np.asarray(stretch.in_window(way.frames)) < min(hands[0].frames))
 
 
 def _keeps_back(score: Score, who: str) -> bool:
@@ -386,7 +385,7 @@ def _dancing_parts(stretch: Stretch, seed: int, joints: Sequence[Sequence[int]])
     at, every = stretch.every(EVENLY), np.union1d(np.arange(0, stretch.frames, EVENLY), [stretch.frames - 1])
     parts, ways = list[Part](), dict[int, Way2D]()
     for person, poses in enumerate(dancing(stretch.stand, stretch.frames, seed)):
-        parts.append(stretch.draft(person, at, poses[at], joints[person]))
+        parts += [stretch.known(person, at, poses[at], FEET), stretch.draft(person, at, poses[at], joints[person])]
         ways[person] = Way2D(person, every.tolist(), poses[every, 0][:, [0, 2]], heading(poses[every]))
     return parts, ways
 

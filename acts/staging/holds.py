@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from motion.skeleton import SIDES
-from motion.vectors import Array, floor_points, unit
+from motion.skeleton import FEET, SIDES
+from motion.vectors import Array, floor_points, leftwards, unit
 
+from .lifts import stepping
 from .places import EVENLY
 from .poses import JOINT, TRUNK, UPRIGHT, WRISTS, Pose, bending, leaning, upright
 from .recordings import sampled
@@ -27,19 +28,24 @@ class Hold:
         apart: metres between the pelvises of the two.
         turns: a second, of the two around the middle between them.
         lean: radians by which they lean towards each other.
+        aside: metres by which a metre of the trunk leans to the right, so that the heads are beside each other.
+        begins: metres by which they are farther apart when a story begins with it.
     """
 
     apart: float
     turns: float
     lean: float = 0.0
+    aside: float = 0.0
+    begins: float = 0.0
 
 
-COUPLE = "couple"
-"""The hold of two who dance as a recorded couple does."""
+COUPLE, EMBRACE = "couple", "embrace"
+"""The holds of two who dance as a recorded couple does, and of two who may come up to each other for it."""
 HOLDS: Mapping[str, Hold] = {
     "closed": Hold(0.6, 0.14),
     "ring": Hold(0.85, 0.17),
     "palms": Hold(0.95, 0.0, lean=0.25),
+    EMBRACE: Hold(0.3, 0.0, lean=0.08, aside=0.14, begins=0.6),
     COUPLE: Hold(0.75, 0.0),
 }
 """The holds by their names in the lexicon."""
@@ -47,6 +53,8 @@ TWIRL = 0.42
 """Metres between the pelvises of two people while one turns under the other's arm."""
 _OVER = 1.88
 """Height in metres of the hands over the person who turns under them."""
+STEP = 15
+"""Frames of a step by one of two who go round in a hold."""
 _HIPS = [JOINT["left_hip"], JOINT["right_hip"]]
 _HELD = 45
 """Frames before somebody is up in which their hand is held."""
@@ -55,6 +63,8 @@ _NEAR = 1.1
 _STRAIGHT, _LEANS = 1.4, 1.2
 """Height in metres of the other's shoulder to which somebody who pulls them up stands straight, and radians a metre by
 which they lean to a lower one."""
+_MEET = 0.1
+"""Metres by which two may still be farther apart than in their hold for their hands to begin."""
 _GAP = 0.03
 """Metres from where two hands meet to each wrist."""
 _SHOULDERS = {side: JOINT[f"{side}_shoulder"] for side in SIDES}
@@ -80,6 +90,10 @@ def joined(hold: str, places: Array) -> Array:
     ahead = (b - a) / np.linalg.norm(b - a, axis=-1, keepdims=True).clip(min=1e-6)
     left = np.cross([0.0, 1.0, 0.0], ahead)  # of a
     middle, up = (a + b) / 2, np.array([0.0, 1.0, 0.0])
+    if hold == EMBRACE:  # the left arm is over the other's, the right one under it
+        over, under = (0.14 * ahead + wide * left + high * up for wide, high in ((0.06, 1.3), (-0.04, 1.1)))
+        behind = np.array([-1.0, 1.0, -1.0])
+        return np.stack([[b + over, b + under], [a + behind * over, a + behind * under]])
     if hold != "closed":
         wide, high, apart = (0.24, 1.05, 0.03) if hold == "ring" else (0.17, 1.3, 0.06)
         one, other = (middle + side * wide * left + high * up for side in (1, -1))
@@ -97,9 +111,14 @@ def joined(hold: str, places: Array) -> Array:
 def hold_parts(hold: str, stretch: Stretch) -> list[KnownFrames]:
     """The trunks and hands of two people in a hold."""
     courses = [stretch.course(person) for person in (0, 1)]
+    met = np.linalg.norm(courses[0].places - courses[1].places, axis=1) < HOLDS[hold].apart + _MEET
     at = stretch.shown(np.arange(REACHES, stretch.frames, OFTEN))
+    at = at[met[at]]
     wrists = joined(hold, np.stack([course.places[at] for course in courses]))
-    return _with_hands(stretch, at, HOLDS[hold].lean, wrists, WRISTS, [*TRUNK, *WRISTS])
+    every, feet = stretch.every(EVENLY), list[KnownFrames]()
+    for person, course in enumerate(courses if HOLDS[hold].turns else ()):  # by itself the network crosses their legs
+        feet.append(stretch.known(person, every, stepping(course, STEP, 0, stretch.frames)[every], FEET))
+    return feet + _with_hands(stretch, at, HOLDS[hold], wrists, WRISTS, [*TRUNK, *WRISTS])
 
 
 def twirl_parts(stretch: Stretch) -> list[KnownFrames]:
@@ -107,17 +126,19 @@ def twirl_parts(stretch: Stretch) -> list[KnownFrames]:
     at = stretch.shown(np.arange(REACHES, stretch.frames - REACHES, OFTEN))
     hands = raised(np.stack([stretch.course(person).places[at] for person in (0, 1)]))
     wrist = [JOINT["right_wrist"]]
-    return _with_hands(stretch, at, 0.0, np.stack([hands[None]] * 2), wrist, [*_HIPS, *TRUNK, *wrist])
+    return _with_hands(stretch, at, Hold(TWIRL, 0.0), np.stack([hands[None]] * 2), wrist, [*_HIPS, *TRUNK, *wrist])
 
 
 def _with_hands(
-    stretch: Stretch, at: Frames, lean: float, places: Array, wrists: Sequence[int], joints: Sequence[int]
+    stretch: Stretch, at: Frames, hold: Hold, places: Array, wrists: Sequence[int], joints: Sequence[int]
 ) -> list[KnownFrames]:
     """Joints of two people who stand or lean, with wrists at places (2, W, N, 3)."""
     parts = []
     for person in (0, 1):
         course = stretch.course(person)
-        poses = bending(course.places[at], course.headings[at], lean)
+        poses = bending(course.places[at], course.headings[at], hold.lean)
+        right = -floor_points(leftwards(course.headings[at]))[:, None]
+        poses += hold.aside * (poses[..., 1:2] - poses[:, :1, 1:2]) * right
         poses[:, wrists] = np.moveaxis(places[person], 0, 1)
         parts.append(stretch.known(person, at, poses, joints))
     return parts

@@ -51,6 +51,25 @@ def takes_hold(carry: str) -> float:
     return 1.0 if carry == "drags" else 0.45
 
 
+def stepping(course: Course, stride: int, first: int, last: int) -> Array:
+    """Poses (N, 22, 3) from the first frame to before the last of somebody on a course, one foot after the other.
+
+    Args:
+        course: of the person.
+        stride: frames of a step.
+        first, last: frames of the course.
+    """
+    steps = Steps(stride)
+    speed, turned = floor_points(np.gradient(course.places, axis=0)), np.gradient(course.headings)
+    poses = []
+    for t in range(first, last):
+        pose = upright(course.places[t], float(course.headings[t]))
+        pose -= pose[0] * FLAT - floor_points(course.places[t])
+        moving = bool(np.linalg.norm(speed[t]) > _STANDS or abs(turned[t]) > _STANDS)
+        poses.append(steps(pose, moving=moving, ahead=stride / 2 * speed[t]))
+    return np.stack(poses)
+
+
 @dataclass(frozen=True)
 class Carrying:
     """A lift in its beat.
@@ -130,7 +149,7 @@ class Carrying:
         held = [*range(first, last, OFTEN), *range(max(first, last - 1), last)]  # none in a beat that is too short
         at = self.stretch.shown(np.unique(np.array(held, dtype=int)))
         if len(at):
-            walking = self._walking()[at - first]
+            walking = stepping(course, STRIDE if self.lift.spins else LADEN, *self.off)[at - first]
             theirs, own = carried(self.lift.carry, course.places[at], course.headings[at])
             sinks = walking[:, :1] - own[:, :1]
             own += sinks
@@ -155,20 +174,6 @@ class Carrying:
         for side in hands_of(self.gesture):
             places = wrist(self.gesture.gesture, side, at / FPS, ahead)
             theirs[:, JOINT[f"{side}_wrist"]] = theirs[:, 0] + np.einsum("nij,nj->ni", turns, places)
-
-    def _walking(self) -> Array:
-        """(N, 22, 3) the carrier's poses while the other is off the floor, one foot after the other."""
-        course, stride = self.course, STRIDE if self.lift.spins else LADEN
-        steps = Steps(stride)
-        speed = floor_points(np.gradient(course.places, axis=0))
-        turned = np.gradient(course.headings)
-        poses = []
-        for t in range(*self.off):
-            pose = upright(course.places[t], float(course.headings[t]))
-            pose -= pose[0] * FLAT - floor_points(course.places[t])
-            moving = bool(np.linalg.norm(speed[t]) > _STANDS or abs(turned[t]) > _STANDS)
-            poses.append(steps(pose, moving=moving, ahead=stride / 2 * speed[t]))
-        return np.stack(poses)
 
     def _on_feet(self) -> Iterator[tuple[int, Array]]:
         """Frames before and after the lift, and poses (22, 3) of the person carried then."""

@@ -10,12 +10,11 @@ import numpy as np
 from acts.plan import other_of
 from motion.vectors import Array, direction
 
-from .floor import ABEAM
 from .holds import HOLDS, TWIRL
 from .lifts import takes_hold
-from .places import Standing
+from .places import ABEAM, Standing
 from .poses import upright
-from .score import Lift, Move, Score, Strike, Touch, Way
+from .score import DODGES, Lift, Move, Score, Strike, Touch, Way
 from .strikes import BOUTS
 from .touches import LOWEST, beside, kneels, middle, reach
 
@@ -24,7 +23,8 @@ _GOING = {"away", "past", "around", "along", "to", "behind"}
 FAR_BEYOND = 0.4
 """Metres by which two people may be further apart than what they do needs before they come up to each other for it."""
 _COMES = ("to", "behind", "beside", "stay", "face")
-_WAITS = ("stay", "averted", "face", "turn")
+_LEAVES = ("turn", "face", *DODGES)
+_WAITS = ("stay", "averted", "to", *_LEAVES)
 
 
 def fastest(moves: Sequence[Move]) -> list[Move]:
@@ -40,7 +40,8 @@ def fastest(moves: Sequence[Move]) -> list[Move]:
 
 def held_moves(hold: str) -> tuple[Move, ...]:
     """Two in a hold go round the middle between them."""
-    return tuple(Move(who, "hold", near=HOLDS[hold].apart, turns=HOLDS[hold].turns) for who in "ab")
+    near, turns, begins = HOLDS[hold].apart, HOLDS[hold].turns, HOLDS[hold].begins
+    return tuple(Move(who, "hold", near=near, turns=turns, metres=begins) for who in "ab")
 
 
 def twirled_moves(leader: str) -> tuple[Move, ...]:
@@ -146,7 +147,7 @@ def meeting(
     down = kneels(touch, pose)
     if (giver in posed and not down) or any(move.way not in _COMES for move in own):
         return None, moves
-    if any(move.way not in (*_WAITS, "to") for move in theirs):
+    if any(move.way not in _WAITS for move in theirs):
         return None, moves
     near = reach(touch, pose)
     lies = 1 - giver in posed and beside(pose, stand.places[giver]) is not None
@@ -157,11 +158,12 @@ def meeting(
     ]
     if not any(move.near for move in comes):
         speed = 1.2 if touch.beside else 0.8
-        comes = [*(m for m in comes if m.way == "face"), Move(touch.person, way, speed, near=near)]
+        comes = [*(m for m in comes if m.way == "face"), Move(touch.person, way, speed, near=near, until=True)]
     other = "ab"[1 - giver]
     waits = [Move(m.person, m.way, m.speed, near=near) if m.way == "to" else m for m in theirs]
-    if 1 - giver not in posed and not touch.fells and (not waits or waits[0].way in ("turn", "face")):
-        waits = [Move(other, "averted" if touch.behind else "stay"), *waits]
+    if 1 - giver not in posed and not touch.fells and (not waits or waits[0].way in _LEAVES):
+        faces = touch.behind or any(move.way in DODGES for move in waits)
+        waits = [Move(other, "averted" if faces else "stay"), *waits]
     return touch, (*comes, *waits)
 
 

@@ -144,6 +144,8 @@ ROUND = 0.6
 """Metres from the middle of a seat or a table at which people go round it."""
 AT_TABLE = 0.82
 """Metres from the pelvis to the middle of a table at which somebody sits."""
+ABEAM = 0.3
+"""Cosine of the angle between where somebody faces and where the other is, below which the other is not before them."""
 HALT = 0.3
 """Seconds of its speed that a walk takes to stop."""
 MOST = 3.2

@@ -212,7 +212,7 @@ def performance(gestures: Mapping[str, Gesture], person: int, frames: int, seed:
     known = () if gesture.times else takes(HELD if lowers else gesture.gesture, gesture.sides)
     if not known:
         return None
-    length, begins = frames / FPS, late_by(seed, person, frames)
+    length, begins = frames / FPS, gesture.late + late_by(seed, person, frames)
     stops = length
     if lowers:  # the hand is up when the beat begins
         begins, stops = -RAISED, 0.5 * length

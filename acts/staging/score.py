@@ -24,6 +24,8 @@ _TO_SEATS = ("to", "beside", "away", "ahead", "thing", "along")
 """Ways at whose end people may sit down."""
 IN_PLACE = ("stay", "averted", "back to back")
 """Ways of people who stay as they are."""
+DODGES = ("back", "aside")
+"""Ways in which somebody gets out of a blow's reach."""
 LOW = frozenset(("leg", "foot"))
 """Parts of a standing person's body that one kneels down to reach."""
 LOWERED = frozenset(("kneels", "crouches", "bends down"))
@@ -42,7 +44,7 @@ class Move:
         until: the move ends early, because something happens then.
         linked: they hold each other by the hands or arms.
         late: it comes after something else that is done in place.
-        metres: length of the way, of "ahead" and "back"; 0 for the usual one.
+        metres: length of the way, of "ahead" and "back"; 0 for the usual one. Of "hold", of the way to each other.
         near: metres between the two pelvises at its end; 0 leaves that to the network.
         backwards: they go away with their face to the other.
         gait: as in :class:`acts.shapes.Go`.
@@ -165,6 +167,7 @@ class Score:
         behind: the person who stands behind the other when a story begins with the beat; "" for nobody.
         apart: metres between them then; 0 leaves it free.
         reaching: those who do something within the other's reach, and the metres between the two for it.
+        reacting: those of whom the words only say what is done to them, and who react to it.
         alone: a sentence on what a does and one on what b does; "" for a person who has none of their own.
     """
 
@@ -190,6 +193,7 @@ class Score:
     behind: str = ""
     apart: float = 0.0
     reaching: Mapping[str, float] = field(default_factory=dict)
+    reacting: frozenset[str] = frozenset()
     alone: tuple[str, str] = ("", "")
 
     @property
@@ -268,11 +272,13 @@ def as_story(scores: Sequence[Score]) -> tuple[Score, ...]:
         )
         moves = (replace(move, sits=move in there) for move in score.moves)
         scores[i] = replace(scores[i], moves=(*moves, *turns)) if there else scores[i]
-    for i, score in enumerate(scores):  # a person who is down does not stand by, nor get up for a bow
-        postures = at_start([*scores[:i], replace(score, figures={}), *scores[i + 1 :]], i)
+    for i, score in enumerate(scores):  # a person who is down does not stand by, nor get up for a bow or to step back
+        told = tuple(move for move in score.moves if move.person not in score.reacting)
+        postures = at_start([*scores[:i], replace(score, figures={}, moves=told), *scores[i + 1 :]], i)
         down = {who for who, posture in postures.items() if posture != "stands"}
         kept = {who: each for who, each in score.figures.items() if each.figure != "bows" or who not in down}
-        scores[i] = replace(score, idle=score.idle - down, figures=kept)
+        stays = told if score.reacting & down else score.moves
+        scores[i] = replace(score, idle=score.idle - down, figures=kept, moves=stays)
     return tuple(scores)
 
 

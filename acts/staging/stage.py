@@ -34,7 +34,7 @@ from .act_kinds import (
 from .figures import DANCES, LIMBS
 from .floor import CLOSE
 from .gestures import GESTURES
-from .holds import COUPLE
+from .holds import COUPLE, EMBRACE, HOLDS
 from .moves import (
     away,
     fastest,
@@ -46,7 +46,7 @@ from .moves import (
     told_still,
     twirled_moves,
 )
-from .score import LOW, LOWERED, Change, Lift, Move, Score, Strike, Touch, Way, as_story, goes
+from .score import DODGES, LOW, LOWERED, Change, Lift, Move, Score, Strike, Touch, Way, as_story, goes
 
 PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
@@ -54,10 +54,12 @@ ON_BENCH = 0.65
 """Metres between two who sit on one bench."""
 _MOST = 5
 """Times that something is done in one beat, at most."""
+_TO_THING = 0.3
+"""Of a whole turn: by how much somebody turns from the other to point at a thing."""
+_ACROSS = {"left": "right", "right": "left"}
+"""The side of somebody that is across from one of the person who faces them."""
 _RIGHTWARDS = ("right", "clockwise")
 """Directions to the right, and those of a turn to the right."""
-_DODGES = ("back", "aside")
-"""Ways in which somebody gets out of a blow's reach."""
 _LEGS = frozenset(("dance", "fight", "ways", "play"))
 """Groups whose acts are done on one's feet."""
 
@@ -118,6 +120,8 @@ class _Stage:
         """Those who are behind the other, whether they are there from the start or not."""
         self.faces: set[str] = set()
         """Those who stand before a window or the like and do something with it."""
+        self.reacting: set[str] = set()
+        """Those of whom the words only say what is done to them."""
 
     def score(self) -> Score:
         """All that they ask for."""
@@ -133,6 +137,13 @@ class _Stage:
             elif not act.happens and act.polarity == "done" and len(act.agents) == 1:  # it is offered in vain
                 for shape in refused:
                     self._take(act, shape.model_copy(update={"who": "agent"}))
+        acting = {who for act in self.acts for who in act.agents}
+        for act, entry in self.done:
+            if entry.reaction and len(act.agents) == 1 and (other := other_of(act.agents[0])) not in acting:
+                self.reacting.add(other)
+                facing = act.model_copy(update={"side": _ACROSS.get(act.side or "")})
+                for shape in entry.reaction:
+                    self._take(facing, shape.model_copy(update={"who": "patient"}))
         self._agree()
         struck = strike_of(self.blows, self.done, late=bool(self.blows) and self._follows(self.blows[0][2]))
         if struck is not None and struck.bout == "throws":  # catching is part of it
@@ -168,6 +179,7 @@ class _Stage:
             behind=self.stands_behind,
             apart=self.apart,
             reaching=self._reaching(),
+            reacting=frozenset(self.reacting),
             alone=told_still(away(of_each(self.acts, self.known), moves), idle),
         )
 
@@ -293,7 +305,7 @@ class _Stage:
             turns=float(act.times) if act.times and way == "around" else shape.turns,
             until=shape.stops or any(r.kind == "until" for r in act.order),
             linked=shape.linked,
-            late=way != "after" and self._late(act),
+            late=who in self.reacting or (way != "after" and self._late(act)),
             metres=act.distance if act.distance is not None and way in ("ahead", "back") else shape.metres,
             near=act.distance if act.distance is not None and way == "around" else shape.near,
             backwards=shape.backwards or (way == "away" and act.direction == "back"),
@@ -369,7 +381,7 @@ class _Stage:
 
     def _moves(self, struck: Strike | None) -> tuple[Move, ...]:
         """The moves of the shape that comes first, of which the others yield."""
-        if self.hold:
+        if self.hold and not (self.hold == EMBRACE and any(move.way == "to" for move in self.moves)):
             return held_moves(self.hold)
         if self.lift is not None:
             return lifted_moves(self.lift, max((m.speed for m in self.moves if m.way == "to"), default=1.1))
@@ -377,7 +389,7 @@ class _Stage:
             return twirled_moves(self.twirls)
         if struck is not None:
             other = other_of(struck.turns[0])
-            dodge = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
+            dodge = next((m for m in self.moves if m.person == other and m.way in DODGES), None)
             return struck_moves(struck, dodge, down=other in self.changes)
         return self._own_moves()
 
@@ -386,15 +398,18 @@ class _Stage:
         low = {*self.changes, *self.figures}
         moves = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
         moves = [move for move in moves if move.way != "face" or move.person not in self.changes]  # "sit face to face"
-        if {move.person for move in moves if move.way == "to"} == {"a", "b"}:  # they meet for what they do then
-            moves = [replace(m, near=m.near or self._reaching().get(m.person, 0.0)) for m in moves]
+        if self.hold or {move.person for move in moves if move.way == "to"} == {"a", "b"}:  # they meet for what follows
+            near = dict.fromkeys("ab", HOLDS[self.hold].apart) if self.hold else self._reaching()
+            moves = [replace(m, near=m.near or near.get(m.person, 0.0)) for m in moves]
         going = {move.person for move in moves} | low
-        moves += [Move(who, "thing") for who in sorted(self.faces - going)]
+        points = {who for who, gesture in self.gestures.items() if gesture.gesture == "points"}
+        for who in sorted(self.faces - going):
+            moves.append(Move(who, "turn" if who in points else "thing", turns=_TO_THING))
         moves = led_backwards(followed(moves, until=any(move.until for move in self.moves)))
         if not goes(moves):
             stay = self.done and all(only_stays(entry) for _, entry in self.done)
             return tuple(Move(who, "stay") for who in "ab") if stay and not moves else tuple(moves)
-        backs = any(move.way in _DODGES for move in moves)
+        backs = any(move.way in DODGES for move in moves)
         acting = {who for act, _ in self.done for who in act.agents}
         for who in "ab":
             stands = all(move.person != who for move in moves) and who not in low

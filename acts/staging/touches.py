@@ -7,7 +7,7 @@ who touches is led to where they reach the other, and the hand is given.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
@@ -18,7 +18,7 @@ from motion.transforms import facing, mirrored
 from motion.vectors import FLAT, Array, leftwards, unit
 
 from .places import Course
-from .poses import JOINT, LOWER, TRUNK, kneeling, leaning, placed, upright
+from .poses import HANDS, JOINT, LOWER, TRUNK, UPRIGHT, kneeling, leaning, placed, upright
 from .recordings import drawn
 from .score import Touch
 from .window import GETS_DOWN, REACHES, KnownFrames, Stretch
@@ -66,7 +66,10 @@ BEAT = 20
 TAKEN_BACK = 0.2
 """Metres by which a hand is taken back between two pats."""
 LOWERS = 24
-"""Frames in which a hand that has patted somebody's back goes down."""
+"""Frames in which a hand that has patted somebody's back, where the network would go on to the front, or has pushed
+them goes down."""
+_PUSHED = 0.3
+"""Metres that somebody goes who is pushed, at least: the network would have both fall."""
 
 
 @cache
@@ -205,10 +208,10 @@ def _around(other: Array, shoulder: Array) -> Array:
     return np.asarray(far + inside * unit(near - far) - behind * facing(other) - [0.0, under, 0.0])
 
 
-def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> KnownFrames | None:
-    """The trunk and hands of the person who touches, as the network is given them; None if the beat is too short.
+def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> list[KnownFrames]:
+    """The trunk and hands of the person who touches, as the network is given them; none if the beat is too short.
 
-    Of a person who kneels down to what they touch, also the pelvis and the legs.
+    Of a person who kneels down to what they touch, also the pelvis and the legs, and the head that hands are laid on.
 
     Args:
         touch: the contact.
@@ -217,7 +220,7 @@ def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> K
     """
     giver, frames = "ab".index(touch.person), stretch.frames
     if giver not in stretch.ways:
-        return None
+        return []
     own, other = stretch.course(giver), stretch.course(1 - giver)
     arms = touch.sides
     if touch.beside:
@@ -226,7 +229,8 @@ def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> K
         touch = touch.model_copy(update={"hands": arms[0] if touch.sides else "none"})
     down = kneels(touch, posed.get(1 - giver, upright(np.zeros(2), 0.0)))
     first = _since(np.abs(own.headings - own.headings[-1]) > 0.2) if touch.beside else 0
-    first = max(first, _arrival(own), _arrival(other) if 1 - giver in stretch.ways else 0)
+    apart = np.linalg.norm(own.places - other.places, axis=1)
+    first = max(first, _arrival(own), int(np.argmax(apart < apart.min() + 0.04)))
     first += GETS_DOWN if down else REACHES
     first = max(first, round(0.6 * frames)) if touch.late else first
     last = min(frames, _leaving(other, first))
@@ -247,14 +251,22 @@ def touch_parts(touch: Touch, posed: Mapping[int, Array], stretch: Stretch) -> K
         kept.append(frame)
         poses.append(_reaching(touch, target, own, frame, back))
     comes = range(REACHES, first - REACHES, REACHES) if touch.beside and stretch.start else range(0)
-    for frame in (*comes, *_rests(touch, at, frames)):
+    pushes = bool(at) and float(np.linalg.norm(other.places[-1] - other.places[at[0][0]])) > _PUSHED
+    rests = range(at[-1][0] + LOWERS, frames, REACHES // 2) if pushes or (at and touch.times and touch.behind) else ()
+    for frame in (*comes, *rests):
         if stretch.shows(frame):
             kept.append(frame)
             poses.append(upright(own.places[frame], float(own.headings[frame])))
     if not kept:
-        return None
+        return []
     order = np.argsort(kept)
-    return stretch.known(giver, np.array(kept)[order], np.stack(poses)[order], joints)
+    parts = [stretch.known(giver, np.array(kept)[order], np.stack(poses)[order], joints)]
+    if touch.part == "head" and touch.sides and (1 - giver not in posed or posed[1 - giver][0, 1] > UPRIGHT):
+        parts.append(stretch.still(1 - giver, np.array(kept)[order], [JOINT["head"]]))
+    elif pushes:
+        steady = stretch.shown(np.array([*range(0, at[0][0], REACHES), *rests]))
+        parts += [stretch.still(1 - giver, steady, [*TRUNK, *HANDS])] if len(steady) else []
+    return parts
 
 
 def _reaching(touch: Touch, target: Array, own: Course, frame: int, back: float) -> Array:
@@ -281,13 +293,6 @@ def _moments(touch: Touch, first: int, last: int) -> list[tuple[int, float]]:
         if i + 1 < touch.times:
             moments.append((on + BEAT // 2 + 3, TAKEN_BACK))
     return [(frame, back) for frame, back in moments if frame < last]
-
-
-def _rests(touch: Touch, at: Sequence[tuple[int, float]], frames: int) -> range:
-    """The frames after the last pat of somebody's back: their hands hang, where the network would pat the front."""
-    if not touch.times or not touch.behind or not at:
-        return range(0)
-    return range(at[-1][0] + LOWERS, frames, REACHES // 2)
 
 
 def _arrival(course: Course) -> int:

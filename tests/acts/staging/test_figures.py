@@ -137,7 +137,7 @@ def test_who_jumps_is_in_the_air_as_often_as_told_and_as_long_as_a_body_falls(ti
 def test_after_a_figure_people_stand_by_where_it_ended(name: str) -> None:
     figure = Figure(figure=name, times=1)
     plain = figured([figure], np.zeros(2), 0.0, 240)
-    poses = _rested(plain, [figure], 0, 3)
+    poses = _rested(plain, [figure], 0, 9)
     busy = np.linalg.norm(np.diff(plain, axis=0), axis=-1).max(axis=1) > 0.02
     np.testing.assert_allclose(poses[:-1][busy], plain[:-1][busy], atol=0.05)
     np.testing.assert_allclose(poses[-1, 0, [0, 2]], plain[-1, 0, [0, 2]], atol=0.4)

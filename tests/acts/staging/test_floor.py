@@ -38,7 +38,7 @@ def gaps(found: dict[int, Way2D]) -> np.ndarray:
     ("words", "near"),
     [
         ("They walk up to each other and shake hands.", 0.75),
-        ("They run towards each other and hug.", 0.4),
+        ("They run towards each other and hug.", 0.3),
         ("They walk up to each other.", CLOSE),
     ],
 )

@@ -9,20 +9,43 @@ from acts import read
 from acts.staging.given import Story, plan_parts
 from acts.staging.poses import ALL, HANDS, JOINT
 from acts.staging.stage import scores_of
-from acts.staging.window import KnownFrames, Window
+from acts.staging.window import KnownFrames, KnownPath, Part, Window
 from motion import FPS, SMPL22
+from motion.skeleton import FEET
 from motion.transforms import Placement
+from motion.vectors import direction
 
 SECONDS = 5.0
 FRAMES = round(SECONDS * FPS)
 
 
-def poses_of(words: str) -> list[KnownFrames]:
-    """The poses that the only window of a sentence is given."""
+def parts_of(words: str) -> list[Part]:
+    """What the only window of a sentence is given."""
     story = Story(scores_of([read(words).acts]), [SECONDS], [0, FRAMES], seed=0)
     placement = Placement(np.eye(3), np.zeros(3), np.zeros(3))
-    parts = plan_parts(story, Window(0, 0, 0, FRAMES), np.zeros((2, FRAMES, 22, 3)), placement, ())
-    return [part for part in parts if isinstance(part, KnownFrames)]
+    return plan_parts(story, Window(0, 0, 0, FRAMES), np.zeros((2, FRAMES, 22, 3)), placement, ())
+
+
+def poses_of(words: str) -> list[KnownFrames]:
+    """The poses among them."""
+    return [part for part in parts_of(words) if isinstance(part, KnownFrames)]
+
+
+@pytest.mark.parametrize("words", ["They waltz.", "They dance."])
+def test_two_who_dance_have_feet_that_are_given_and_do_not_cross(words: str) -> None:
+    feet = [np.asarray(part.positions)[:, FEET] for part in poses_of(words) if set(part.joints) == set(FEET)]
+    a, b = feet
+    assert np.linalg.norm(a[:, :, None] - b[:, None], axis=-1).min() > 0.04
+
+
+@pytest.mark.parametrize(("words", "towards"), [("A pushes B.", 1.0), ("A pushes B from behind.", -1.0)])
+def test_who_is_pushed_is_touched_until_they_step_away(words: str, towards: float) -> None:
+    (hands,) = (part for part in poses_of(words) if part.person == 0 and JOINT["left_wrist"] in part.joints)
+    (way,) = (part for part in parts_of(words) if isinstance(part, KnownPath) and part.person == 1 and part.turned)
+    gone = np.interp(np.arange(FRAMES), way.frames, np.linalg.norm(way.places - way.places[0], axis=1))
+    assert gone[hands.frames[0]] < 0.05 < gone[min(hands.frames[-1] + 15, FRAMES - 1)] and gone[-1] > 0.5
+    away = np.asarray(way.places[-1]) - np.asarray(hands.positions)[-1, 0, [0, 2]]
+    assert way.headings is not None and towards * (direction(way.headings[-1]) @ away) < -0.5, "the face to the other"
 
 
 def test_jumps_are_held_and_postures_are_drafts() -> None:
@@ -38,8 +61,9 @@ def test_who_keeps_their_back_to_the_other_does_a_figure_where_they_stand() -> N
 @pytest.mark.parametrize(
     ("words", "held", "head"),
     [
-        ("A scratches his head.", True, False),
+        ("A scratches his head.", True, True),
         ("A puts his hands on his hips.", True, False),
+        ("A kneels down and hides his face in his hands.", True, True),
         ("A walks past B holding a phone to his ear.", True, True),
         ("A points at B.", False, False),
     ],
@@ -51,7 +75,7 @@ def test_a_hand_on_ones_own_body_is_held_as_a_touch_is(words: str, held: bool, h
 
 
 def test_whose_hands_are_busy_is_drafted_as_walking_without_hands_and_not_as_waiting() -> None:
-    parts = [part for part in poses_of("They walk up to each other and hug.") if part.person == 1]
+    parts = [part for part in poses_of("They walk up to each other and shake hands.") if part.person == 1]
     assert parts and not any(set(HANDS) & set(part.joints or ALL) for part in parts)
     assert max(part.frames[-1] for part in parts) < 80, "while they walk"
 

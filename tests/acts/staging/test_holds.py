@@ -23,6 +23,7 @@ LEFT, RIGHT = 0, 1
         ("They take each other by both hands and spin round and round.", "ring", ""),
         ("They push palm against palm.", "palms", ""),
         ("They dance.", "couple", ""),
+        ("A walks up to B and hugs B.", "embrace", ""),
         ("Person A dances a tango while person B watches.", "", ""),
         ("He twirls her.", "", "a"),
         ("She spins under his arm.", "", "b"),
@@ -42,6 +43,15 @@ def test_a_leads_with_the_left_hand_and_has_the_right_on_the_partners_back() -> 
     assert abs(hands[0, RIGHT][2] - 0.5) < 0.1 and hands[0, RIGHT][1] > 1.0
     assert hands[1, LEFT][1] - hands[0, RIGHT][1] > 0.3, "b's arm lies over a's, and not in it"
     assert abs(hands[1, LEFT][2]) < 0.15 and hands[1, LEFT][0] < -0.1, "on a's right shoulder"
+
+
+def test_in_an_embrace_all_hands_are_on_the_others_back_one_over_the_other() -> None:
+    places = np.array([[[0.0, 0.0]], [[0.0, HOLDS["embrace"].apart]]])
+    hands = joined("embrace", places)[:, :, 0]
+    for person, side in ((0, 1.0), (1, -1.0)):
+        behind = side * (hands[person, :, 2] - places[1 - person, 0, 1])
+        assert (behind > 0.1).all() and hands[person, LEFT][1] > hands[person, RIGHT][1] + 0.1
+    assert all(move.near == HOLDS["embrace"].apart for move in score("They run up to each other and hug.").moves)
 
 
 def test_both_hands_are_joined_in_a_ring_wherever_it_has_turned_to() -> None:

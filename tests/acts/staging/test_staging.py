@@ -8,8 +8,8 @@ import pytest
 from acts import lexicon, read
 from acts.plan import Act, Plan, Relation
 from acts.shapes import Figure
-from acts.staging.score import Score
-from acts.staging.stage import score_of
+from acts.staging.score import Score, at_start
+from acts.staging.stage import score_of, scores_of
 from motion import InputError
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.beats import Beat, acts_of
@@ -158,6 +158,21 @@ def test_struck_people_answer_in_the_beat() -> None:
     told_ = score_of(beats_of(read("He punches her and she falls down."))[0].acts)
     assert told_.strike is not None and told_.strike.bout == "fists" and told_.strike.answered
     assert Beat("", acts=(Act(id="1", act="waltz", agents=("a", "b")),)).length == 8.0
+
+
+def test_who_is_pushed_scared_or_slapped_answers_where_the_words_leave_them_free() -> None:
+    pushed = score("A pushes B.")
+    assert [(move.person, move.way, move.late) for move in pushed.moves] == [("b", "back", True)]
+    assert pushed.touch and pushed.touch.part == "chest" and pushed.reacting == {"b"}
+    assert score("A slaps B with the left hand.").gestures["b"].sides == "right", "the cheek that is hit"
+    assert not score("A scares B while B waves.").moves, "B is told to do something else"
+    seated, scared = scores_of([read("A sits.").acts, read("B scares A.").acts])
+    assert at_start([seated, scared], 1)["a"] == "sits" and "a" in scared.gestures
+
+
+@pytest.mark.parametrize(("text", "way"), [("A points at the door.", "turn"), ("A looks at the door.", "thing")])
+def test_who_points_at_a_thing_turns_to_it_and_stays(text: str, way: str) -> None:
+    assert [move.way for move in score(text).moves if move.person == "a"] == [way]
 
 
 def test_acts_of_a_story_are_read() -> None:
