@@ -56,7 +56,7 @@ class Arguments:
             elif (
                 child.dep_ in ("dobj", "obj")
                 and bare
-                and (child.lower_ in self._words.directions or child.pos_ == "ADV")
+                and (child.lower_ in self._words.directions or child.pos_ == "ADV" or child.lower_ == "times")
             ):
                 self._modifier(child, event)
             elif child.dep_ in ("dobj", "obj", "npadvmod") and (way := self._way(child, event)):  # "walks down a ramp"
@@ -339,6 +339,11 @@ class Arguments:
         for child in token.children:
             if child.dep_ == "prep":
                 self._preposition(child, event.subject.who if event.subject else "", event)
+            elif (
+                lemma != "time" and child.lemma_ == "time" and (often := self._number(token))
+            ):  # "three times clockwise"
+                event.times = int(often)
+                self.seen.add(child.i)
             elif child.dep_ == "npadvmod" and self._words.part(child.lemma_.lower()) and event.object is None:
                 event.object = self._argument(child, event.subject.who if event.subject else "", event)
             elif child.dep_ in ("advmod", "npadvmod", "amod", "compound", "nummod") or (

@@ -87,8 +87,10 @@ def _stopped(text: Text, speller: Speller) -> Parse:
 
 
 def _with_verbs(text: Text, speller: Speller) -> Parse:
-    parsed = Parse(text, parse(text.parsed))
-    changes = verbs_taken_for_nouns(parsed.doc, speller.forms) | deeds_done(parsed.doc, speller.is_deed)
+    doc, forms = parse(text.parsed), speller.forms
+    lemmas = {t.i: forms[t.lower_][0] for t in doc if t.pos_ == "VERB" and t.lower_ in forms and t.lemma_ not in forms}
+    parsed = Parse(text, doc, lemmas)  # "rides" is of "ride", and not of "rid"
+    changes = verbs_taken_for_nouns(doc, forms) | deeds_done(doc, speller.is_deed)
     return parsed.changed(changes) if changes else parsed
 
 

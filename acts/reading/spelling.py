@@ -175,7 +175,7 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
     last = ""  # the ending of the last finite verb of the sentence
     for token in doc:
         last = "" if token.is_sent_start else last
-        form = forms.get(token.lower_)
+        form = None if is_noun_or_side(token) else forms.get(token.lower_)
         if form is not None and (
             (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
             or _coordinated(token, form[1], last)

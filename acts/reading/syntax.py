@@ -168,6 +168,7 @@ def is_noun_or_side(token: Token) -> bool:
     behind = token.doc[token.i + 1].lower_ if token.i + 1 < len(token.doc) else ""
     sided = before.lower_ in ("both", "left", "right") or before.tag_ == "PRP$"
     sided = sided or behind in closed("laid") - {"over", "around"}  # "hands above his head"
+    sided = sided or (token.i > 1 and token.nbor(-2).pos_ == "ADP" and before.lower_.endswith(("ing", "ed")))
     if sided and token.tag_ in ("NNS", "VBZ") and vocabulary().part(token.lemma_.lower()):
         return True
     if word not in ("left", "level", "height") or has(token, "dobj", "nsubj"):

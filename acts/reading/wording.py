@@ -99,7 +99,8 @@ class _Preparation:
         ends = (ends and self._is_verb(self._lower(i - 1))) or self._lower(i - 1) in ("him", "her")
         if self._lower(i) == "round" and ends:
             return self._as_one("around", i, 1)  # the adverb, and no noun: "and spin round"
-        owned = self._lower(i - 1).endswith("'s") and self._lower(i - 1) not in ("he's", "she's", "it's")
+        owned = self._lower(i - 1) in ("lower", "upper") or self._lower(i - 1).endswith("'s")
+        owned = owned and self._lower(i - 1) not in ("he's", "she's", "it's")
         laid = self._lower(i - 2) == "on" and self._lower(i - 3).startswith(tuple(closed("lies")))
         rubbed = self._lower(i - 2).startswith(tuple(closed("strokes")))
         turned = self._lower(i - 1) == "her" and (self._lower(i + 1) in closed("behind back") or laid or rubbed)

@@ -239,7 +239,8 @@ class _Stage:
             case shapes.Link():
                 self.linked = True
             case shapes.Lift() if self.lift is None or self.lift.carry == "up":
-                comes = people[0] if self.lift is not None else ""  # to pick up the person whom they then carry
+                rider = act.agents[0] if shape.who == "patient" and not act.already else ""  # jumps on the back
+                comes = people[0] if self.lift is not None else rider  # to pick up the person whom they then carry
                 self.lift = Lift(carrier=people[0], carry=shape.carry, spins=shape.spins, comes=comes)
             case shapes.Strike():
                 both = self.known.entries[act.act].mutual

@@ -140,6 +140,7 @@ def test_what_is_done_is_said_without_what_was_not_measured() -> None:
         ("They high-five.", ""),
         ("A strokes B's cheek.", "strokes B's cheek"),
         ("A marches.", "marches"),
+        ("She rides on his back.", ""),
         ("A threatens B.", "threatens B"),
         ("They curl up.", "curl up"),
         ("A supports B.", "supports B"),

@@ -44,6 +44,9 @@ def last(text: str) -> Act:
         # a number of things is not how often
         ("He juggles three balls.", {"thing": "ball", "times": None}),
         ("They carry two chairs.", {"thing": "chair", "times": None}),
+        ("He nods three times slowly.", {"times": 3}),
+        ("They turn three times clockwise.", {"times": 3}),
+        ("They circle each other twice clockwise.", {"times": 2}),
     ],
 )
 def test_the_last_act_is_what_the_words_say(text: str, fields: dict[str, object]) -> None:

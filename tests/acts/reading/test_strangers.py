@@ -102,6 +102,8 @@ from tests.acts.reading.reading import told
         ("She raises a hand high.", [("raise-arm", "a", None)]),
         ("the man looks to left, then turns to right", [("look-around", "a", None), ("turn-around", "a", None)]),
         ("They tap dance.", [("dance", "ab", None)]),
+        ("A punches with alternating hands.", [("punch", "a", None)]),
+        ("He places a palm on her lower back.", [("hand-on", "a", "b")]),
         ("She jumps on his back and he carries her.", [("ride-back", "a", "b"), ("carry-back", "b", "a")]),
         ("They circle each other, three metres apart.", [("circle-together", "ab", None)]),
         ("They bow to the audience.", [("bow", "ab", None), ("form-line", "ab", None)]),
