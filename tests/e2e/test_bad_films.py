@@ -69,16 +69,16 @@ def test_nobody_is_told(page: Page) -> None:
     assert said(page, looks.format("person")) == "Error: 30", "one person in each of 30 pictures"
 
 
-def encoded(path: Path, codec: str, times: list[float], size: tuple[int, int] = (64, 48)) -> bytes:
+def encoded(path: Path, codec: str, times: list[float]) -> bytes:
     """A film with a grey picture at each of the times."""
     av = pytest.importorskip("av")
     if codec not in av.codecs_available:
         pytest.skip(f"this PyAV cannot make a film with {codec}")
     with av.open(str(path), "w") as film:
         stream = film.add_stream(codec, rate=30)
-        stream.width, stream.height, stream.pix_fmt = *size, "yuv420p"
+        stream.width, stream.height, stream.pix_fmt = 64, 48, "yuv420p"
         for time in times:
-            picture = av.VideoFrame.from_ndarray(np.full((size[1], size[0], 3), 128, np.uint8), format="rgb24")
+            picture = av.VideoFrame.from_ndarray(np.full((48, 64, 3), 128, np.uint8), format="rgb24")
             picture.pts, picture.time_base = round(30 * time), Fraction(1, 30)
             film.mux(stream.encode(picture))
         film.mux(stream.encode(None))

@@ -60,15 +60,14 @@ ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
 
 
-def turned(angle: float, begins: int = 30, takes: int = 27, frames: int = 120, later: int = 6) -> np.ndarray:
+def turned(angle: float, begins: int = 30, later: int = 6) -> np.ndarray:
     """A person (T, 22, 3) who turns over feet that stay, and are under the hips ``later`` frames after the turn."""
     rest = np.repeat((SMPL22.rest_positions() + np.array([0, 0.92, 0]))[None], 4, axis=0)
     stands = plant_feet(rest, np.ones((4, 4), dtype=bool))[0]  # on bent knees
-    time = np.arange(frames)
-    turns = heading_matrix(angle * minimum_jerk((time - begins) / takes))
+    turns = heading_matrix(angle * minimum_jerk((np.arange(120) - begins) / 27))
     body = np.einsum("tij,nj->tni", turns, stands - stands[0] * [1, 0, 1])
     feet = np.stack([body[:, [ankle, toe]] for ankle, toe in zip(ANKLES, TOES, strict=True)], axis=1)
-    feet[: begins + takes + later] = feet[0]
+    feet[: begins + 27 + later] = feet[0]
     return with_feet(body, feet)
 
 

@@ -94,14 +94,13 @@ def test_nobody_is_walked_through(engine: Engine, monkeypatch: pytest.MonkeyPatc
     assert np.abs(np.diff(made, axis=0)).max() < 0.06
 
 
-def watched(*rows: tuple[float, ...], frames: int, turned: int | None = None) -> tuple[LiveAgent, Recorded, list[str]]:
+def watched(*rows: tuple[float, ...], frames: int) -> tuple[LiveAgent, Recorded, list[str]]:
     """The agent after it has watched somebody, what it was given, and its state in every frame."""
     partner = Recorded()
     agent = LiveAgent(Scripted(*rows), partner)  # type: ignore[arg-type]
     states = []
-    for index in range(frames):
-        away = turned is not None and index >= turned
-        agent.step(STANDING @ heading_matrix(np.pi).T if away else STANDING)
+    for _ in range(frames):
+        agent.step(STANDING)
         states.append(agent.belief.state)
     return agent, partner, states
 

@@ -39,10 +39,10 @@ def gesture(hand: str, frames: int = 60) -> np.ndarray:
     return bent({side: wrist(hand, side, np.arange(frames) / 30, towards) for side in SIDES}, frames)
 
 
-def rubbing(speed: float = 2.0, frames: int = 60) -> np.ndarray:
+def rubbing(speed: float = 2.0) -> np.ndarray:
     """Each hand on the other upper arm, going up and down it."""
-    up = 0.06 * np.sin(2 * np.pi * speed * np.arange(frames) / 30)
-    found = bent({}, frames)
+    up = 0.06 * np.sin(2 * np.pi * speed * np.arange(60) / 30)
+    found = bent({}, 60)
     for side, other in (("left", "right"), ("right", "left")):
         arm = (found[:, J(f"{other}_shoulder")] + found[:, J(f"{other}_elbow")]) / 2
         found[:, J(f"{side}_wrist")] = arm + np.stack([0 * up, up, 0.09 + 0 * up], axis=1)
@@ -53,19 +53,19 @@ def rubbing(speed: float = 2.0, frames: int = 60) -> np.ndarray:
     return found
 
 
-def fanning(frames: int = 60, rate: float = 2.0, wide: float = 0.12) -> np.ndarray:
+def fanning(rate: float = 2.0, wide: float = 0.12) -> np.ndarray:
     """A hand that goes to and fro before the neck, so many times a second."""
-    swing = wide * np.sin(2 * np.pi * rate * np.arange(frames) / 30)
+    swing = wide * np.sin(2 * np.pi * rate * np.arange(60) / 30)
     place = np.stack([-0.12 + swing, 0.42 + 0 * swing, 0.22 + 0 * swing], axis=1)
-    return bent({"right": place}, frames)
+    return bent({"right": place}, 60)
 
 
 def at_nose(
-    *, since: int = 0, until: int = 60, higher: float = 0.0, aside: float = 0.0, rubs: float = 0.0, guard: bool = False
+    *, since: int = 0, until: int = 60, aside: float = 0.0, rubs: float = 0.0, guard: bool = False
 ) -> np.ndarray:
     """The right hand at the nose in some of 60 frames, and hanging before and after; a guard has the left one up."""
     frames = np.arange(60)
-    nose = np.tile([-0.04 - aside, 0.54 + higher, 0.2], (60, 1))
+    nose = np.tile([-0.04 - aside, 0.54, 0.2], (60, 1))
     nose[:, 1] += rubs * np.sin(2 * np.pi * 2.0 * frames / 30)
     held = ((frames >= since) & (frames < until))[:, None]
     hands = {"right": np.where(held, nose, [-0.25, -0.1, 0.05])}

@@ -27,11 +27,11 @@ def write_vocabulary(folder: Path) -> Path:
     return path
 
 
-def drawn(module: nn.Module, spread: float = 0.05) -> dict[str, Tensor]:
+def drawn(module: nn.Module) -> dict[str, Tensor]:
     """The module's tensors, drawn anew: the zero-initialised ones would hide what the input does."""
     draw = torch.Generator().manual_seed(3)
     for tensor in module.parameters():
-        tensor.data = spread * torch.randn(tensor.shape, generator=draw)
+        tensor.data = 0.05 * torch.randn(tensor.shape, generator=draw)
     return {name: tensor.detach().clone() for name, tensor in module.state_dict().items()}
 
 
@@ -42,19 +42,11 @@ def normaliser() -> tuple[np.ndarray, np.ndarray]:
     return numbers[0], np.full(262, 0.1, dtype=np.float32)
 
 
-def write_intergen(
-    folder: Path, *, sizes: dict[str, int] | None = None, text_width: int = 64, layers: int = 1
-) -> dict[str, Path]:
+def write_intergen(folder: Path) -> dict[str, Path]:
     """``intergen.ckpt`` as Lightning writes it, with its normaliser and a vocabulary; role → path."""
-    small = {"latent_dim": 128, "ff_size": 64, "num_layers": 2, "num_heads": 1}
-    denoiser = InterGenDenoiser(InterGenConfig(**(sizes or small), cond_dim=text_width))
+    denoiser = InterGenDenoiser(InterGenConfig(latent_dim=128, ff_size=64, num_layers=2, num_heads=1, cond_dim=64))
     text = ClipTextEncoder(
-        vocabulary=512 + len(MERGES) + 2,
-        context_length=77,
-        width=text_width,
-        num_layers=layers,
-        ff_size=64,
-        encoder_layers=2,
+        vocabulary=512 + len(MERGES) + 2, context_length=77, width=64, num_layers=1, ff_size=64, encoder_layers=2
     )
     state = {f"model.decoder.net.{name}": value for name, value in drawn(denoiser).items()}
     state |= {

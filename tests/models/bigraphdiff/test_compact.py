@@ -35,9 +35,9 @@ def model() -> CompactBiGraphDiff:
     return network.eval().requires_grad_(False)
 
 
-def noised(model: CompactBiGraphDiff, tokens: int = 6) -> tuple[torch.Tensor, torch.Tensor]:
+def noised(model: CompactBiGraphDiff) -> tuple[torch.Tensor, torch.Tensor]:
     torch.manual_seed(1)
-    return torch.randn(2, tokens, 2 * model.layout.token_features), torch.tensor([10, 900])
+    return torch.randn(2, 6, 2 * model.layout.token_features), torch.tensor([10, 900])
 
 
 def test_the_class_changes_what_is_predicted(model: CompactBiGraphDiff) -> None:

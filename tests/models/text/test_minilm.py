@@ -79,11 +79,11 @@ def test_without_files_or_network_the_error_says_what_to_install(monkeypatch, tm
         MiniLM()
 
 
-def random_tokens(batch: int = 3, length: int = 5):
+def random_tokens():
     generator = torch.Generator().manual_seed(0)
-    mask = torch.ones(batch, length, dtype=torch.bool)
+    mask = torch.ones(3, 5, dtype=torch.bool)
     mask[1, 3:] = False
-    return torch.randn(batch, length, SMALL.token_width, generator=generator), mask
+    return torch.randn(3, 5, SMALL.token_width, generator=generator), mask
 
 
 def test_the_conditioner_ignores_padding():

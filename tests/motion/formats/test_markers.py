@@ -21,7 +21,7 @@ JOINT = {name: POSITIONS[:, index] for index, name in enumerate(SMPL22.joint_nam
 TO_Z_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 
 
-def keypoints(shift: tuple[float, float, float] = (0, 0, 0)) -> dict[str, np.ndarray]:
+def keypoints() -> dict[str, np.ndarray]:
     """Pose2Sim's names of a body's joints, (T, 3) metres, Y up."""
     names = {"foot": "BigToe"}
     sided = {
@@ -29,8 +29,7 @@ def keypoints(shift: tuple[float, float, float] = (0, 0, 0)) -> dict[str, np.nda
         for side in ("left", "right")
         for part in ("hip", "knee", "ankle", "foot", "shoulder", "elbow", "wrist")
     }
-    both = {**sided, "Neck": JOINT["neck"], "Head": JOINT["head"]}
-    return {name: place + np.array(shift) for name, place in both.items()}
+    return {**sided, "Neck": JOINT["neck"], "Head": JOINT["head"]}
 
 
 def trc_text(points: Mapping[str, np.ndarray], *, rate: object = 30, unit: str = "m", scale: float = 1.0) -> str:
@@ -50,12 +49,12 @@ def trc_text(points: Mapping[str, np.ndarray], *, rate: object = 30, unit: str =
     return "\n".join(head) + "\n"
 
 
-def c3d_bytes(points: Mapping[str, np.ndarray], *, rate: float = 100.0, scale: float = -1.0) -> bytes:
+def c3d_bytes(points: Mapping[str, np.ndarray], *, scale: float = -1.0) -> bytes:
     """A .c3d file of points (T, 3) in metres, in millimetres and Z up, as laboratories record.
 
     The numbers are floats, or whole ones of a ``scale`` above 0.
     """
-    writer = c3d.Writer(point_rate=rate, point_scale=scale)
+    writer = c3d.Writer(point_rate=100.0, point_scale=scale)
     writer.set_point_labels(list(points))
     stacked = np.stack(list(points.values()), axis=1) @ TO_Z_UP.T * 1000.0
     for frame in stacked:

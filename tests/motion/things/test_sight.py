@@ -21,8 +21,8 @@ def facing(yaw: float, place=(0.0, 0.0, 0.0)) -> np.ndarray:
     return (STANDING @ turned.T + place)[None]
 
 
-def window(place, yaw: float = np.pi) -> Thing:
-    return Thing.at_rest("window", shape("window"), np.array(place), yaw, 1)
+def window(place) -> Thing:
+    return Thing.at_rest("window", shape("window"), np.array(place), np.pi, 1)
 
 
 FAR = facing(0, (30, 0, 0))

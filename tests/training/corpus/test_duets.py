@@ -21,10 +21,10 @@ J = SMPL22.index
 REST = SMPL22.rest_positions() + np.array([0, 0.98, 0])
 
 
-def couple(frames: int, gap: float = 0.8, *, turned: float = 0.0) -> np.ndarray:
+def couple(frames: int, *, turned: float = 0.0) -> np.ndarray:
     """(2, frames, 22, 3): b stands before a, face to face, and turns on the spot by ``turned`` degrees."""
     angles = np.pi + np.radians(np.linspace(0, turned, frames))
-    b = np.stack([turn(REST[None], float(angle))[0] for angle in angles]) + np.array([0, 0, gap])
+    b = np.stack([turn(REST[None], float(angle))[0] for angle in angles]) + np.array([0, 0, 0.8])
     return np.stack([np.repeat(REST[None], frames, axis=0), b])
 
 
