@@ -21,7 +21,9 @@ from .reading.vocabulary import closed, vocabulary
 VERB = re.compile(r"\[([a-z-]+)\]")
 """A verb of a caption or a phrase: ``[walk]``."""
 _SLOT = re.compile(r"\{([a-z_]+)\} ?")
-_BY_FOOT = re.compile(r"\[(?:kick|step|hop|jump|lunge|stand|stop|walk|run|march|limp|stumble|stamp|turn|spin)\]")
+_BY_FOOT = re.compile(
+    r"\[(?:kick|step|hop|jump|lunge|pirouette|stand|stop|walk|run|march|limp|stumble|stamp|turn|spin)\]"
+)
 _NAMES = {"a": "person A", "b": "person B"}
 _COUNTS = {1: "once", 2: "twice", 3: "three times"}
 _WITH, _BESIDE = re.compile(r" with \{b\}"), re.compile(r" (with|past) \{b\}")

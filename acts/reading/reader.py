@@ -227,7 +227,7 @@ class Reader:
             or (token.dep_ == "advcl" and "than" in marks)  # "rather than shake hands, they bow"
             or (token.dep_ == "pcomp" and (bool(instead) or above.lower_ in ("without", "from")))
         )
-        if any(child.dep_ == "aux" and child.lower_ in self._words.modals["wished"] for child in token.children):
+        if any(child.dep_ == "aux" and child.lower_ in closed("may") for child in token.children):
             event.modality = "wished"
         if children & closed("nearly"):
             event.modality = "tried"

@@ -32,7 +32,7 @@ _DIGESTS = {
     "tok2vec/model": "e84fc06eb319c94d28e460fc334e292120b01f18baa5dc8b50c977459820a090",
 }
 """SHA-256 of the three networks of en_core_web_sm 3.8.0."""
-_HER = re.compile(r"\bher(?= (?:left|right) ([a-z]+))")
+_HER = re.compile(r"\bher(?= (?:(?:left|right) ([a-z]+)|close\b))")
 _lock = threading.Lock()
 
 
@@ -72,14 +72,20 @@ def _language() -> Language:
     return spacy.load(model_folder(), exclude=["ner", "senter"])
 
 
+def _pronoun(her: re.Match[str]) -> str:
+    if her[1] is None:
+        return "him"
+    return "his" if vocabulary().named_part(her[1]) else her[0]
+
+
 def parse(text: str) -> Doc:
     """The syntax of a text.
 
-    "Her right cheek" is parsed as "his right cheek", in which no parser takes the owner for an object.
+    "Her right cheek" is parsed as "his right cheek", and "pulls her close" as "pulls him close", which mean one thing.
     """
     with _lock:  # loads once, and spaCy's pipeline is not meant for several threads
         _words()
-        doc = _language()(_HER.sub(lambda her: "his" if vocabulary().named_part(her[1]) else her[0], text))
+        doc = _language()(_HER.sub(_pronoun, text))
     if doc.text == text:
         return doc
     said = {"tags": "tag_", "pos": "pos_", "lemmas": "lemma_", "deps": "dep_"}

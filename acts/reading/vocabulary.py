@@ -79,7 +79,6 @@ class Vocabulary:
         self.limits = _sets(tables["limits"])
         """What the stage cannot do, as a sentence, by the words that ask for it."""
         self.classes = _sets(tables["classes"])
-        self.modals = _sets(tables["modals"])
 
     def is_person(self, lemma: str) -> bool:
         """True for the lemma of a noun that names a person."""

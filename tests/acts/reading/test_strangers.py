@@ -99,6 +99,7 @@ from tests.acts.reading.reading import told
         ("a person continues walking backwards", [("step-back", "a", None)]),
         ("a person waves their hand side to side", [("wave", "a", "b")]),
         ("He strokes her left cheek.", [("touch", "a", "b")]),
+        ("He pulls her close.", [("pull", "a", "b")]),
         ("She raises a hand high.", [("raise-arm", "a", None)]),
         ("the man looks to left, then turns to right", [("look-around", "a", None), ("turn-around", "a", None)]),
         ("They tap dance.", [("dance", "ab", None)]),
