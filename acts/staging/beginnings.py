@@ -39,8 +39,6 @@ REACH = 0.75
 """Metres between two people one of whom touches the other."""
 _START = {"away": 1.1, "thing": 1.1, "past": 2.2, "around": 1.2, "back": 0.9}
 """Metres between two people at the beginning of a first beat with such a move."""
-_IN_REACH = ("hold", "spar", "around")
-"""Ways of two who begin as near as these say, and farther by their metres."""
 _SEATS = {"sits": seated, "sits on the ground": grounded}
 
 
@@ -93,7 +91,8 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
     if "past" in ways and ways["past"].speed <= CREEPS:
         gap = min(gap, max(0.55 * seconds * ways["past"].speed, 1.2))
-    gap = next((ways[way].near + ways[way].metres for way in _IN_REACH if way in ways and ways[way].near), gap)
+    held = (ways[way] for way in ("hold", "spar", "around") if way in ways)
+    gap = next((move.near + move.metres for move in held if move.near), gap)
     for way in ("to", "behind", "beside"):
         if way in ways:
             gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0))

@@ -28,7 +28,7 @@ class Hold:
         apart: metres between the pelvises of the two.
         turns: a second, of the two around the middle between them.
         lean: radians by which they lean towards each other.
-        aside: metres by which a metre of the trunk leans to the right, so that the heads are beside each other.
+        aside: metres by which a metre of the trunk leans to the right, and each head is beside the other.
         begins: metres by which they are farther apart when a story begins with it.
     """
 

@@ -190,8 +190,6 @@ def strike_parts(struck: Strike, score: Score, stretch: Stretch) -> list[KnownFr
         elif struck.bout == "throws":
             made[1 - blow.person, SIDES] = catching(other, own)
         after |= {person: blow.frame + beside[-1] for (person, _), (beside, _) in made.items()}
-        if struck.bout == "slaps" and "ab"[1 - blow.person] not in {*score.gestures, *score.changes, *score.limbs}:
-            after.setdefault(1 - blow.person, blow.frame)  # they would reach for the other's hand
         for whose, (beside, known) in made.items():
             at = [(blow.frame + frame, pose) for frame, pose in zip(beside, known, strict=True)]
             given.setdefault(whose, {}).update((frame, pose) for frame, pose in at if stretch.shows(frame))
