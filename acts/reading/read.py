@@ -116,7 +116,7 @@ class _Planner:
         if not self._acts and not self._unread:
             self.cost += 2.0
             span = Span(start=0, stop=len(self._text))
-            self._unread.append(Unread(words=span, why="Nothing in this text is something that people do."))
+            self._unread.append(Unread(words=span, why="There is no act in this text that can be shown."))
         return Plan(
             sentence=self._text,
             people=people,

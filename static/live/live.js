@@ -13,7 +13,6 @@ import { say } from "../texts.js";
 
 const WAITING = 8; // pictures that wait for the server; older ones are dropped
 const TOGETHER = 6; // pictures that are sent as one message
-const NAMES = { agent: "agent", regennet: "reactor" };
 
 /** `element` holds live.html; a stream to be kept becomes the value of `props`, and `trigger` tells the page's Python side. */
 export function mount(element, props, watch, trigger) {
@@ -79,7 +78,7 @@ class LivePanel extends Panel {
       if (over()) return;
       const payload = await connection.open();
       if (over()) return;
-      this.live.stream = this.last = new Stream(player, payload, ["you", NAMES[partner]]);
+      this.live.stream = this.last = new Stream(player, payload, [source.video ? "you" : "given", "generated"]);
       this.last.partner = partner;
       if (source.video) {
         this.stage.hidden = false;

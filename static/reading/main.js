@@ -252,7 +252,7 @@ class View {
     this.find(".pdr-notes").replaceChildren(
       ...warnings.map((warning) => node("p", "pdr-error", warning)), ...notes.map((note) => node("p", "", note)),
     );
-    this.find(".pdr-heard").textContent = [...warnings, plan ? summary(plan) : ""].join(" ").trim();
+    this.find("p.pdr-heard").textContent = [...warnings, plan ? summary(plan) : ""].join(" ").trim();
     this.find(".pdr-fold").textContent = plan ? this.line(plan) : error;
     if (focused) this.focusChip(focused);
     this.drawPanel();

@@ -58,9 +58,8 @@ export function spoken(act, said) {
   return `${agents}${whom}: ${said.replace(/ ×(\d+)/, (_, count) => say("reading.times", { count }))}`;
 }
 
-/** What was understood, in one sentence. */
+/** How much was understood. */
 export function summary(plan) {
-  const [acts, parts] = [plan.acts.length, plan.unread.length];
-  const understood = say(acts === 1 ? "reading.act_understood" : "reading.acts_understood", { count: acts });
-  return understood + (parts ? say(parts === 1 ? "reading.part_not" : "reading.parts_not", { count: parts }) : ".");
+  const parts = plan.unread.length;
+  return say("reading.understood", { count: plan.acts.length }) + (parts ? say("reading.parts_not", { count: parts }) : "");
 }

@@ -88,7 +88,9 @@ def test_a_recorded_person_is_answered_as_they_move(lab: str, open_page: Callabl
     expect(page.locator("#react-share")).to_be_visible()
     start(page, "clip")
     two_people(page)
-    expect(page.locator("#react-share")).to_be_hidden()  # a stream is no result yet
+    for of_result in ("#react-share", "#react-status .pd-done"):
+        expect(page.locator(of_result)).to_be_hidden()  # a stream is no result yet
+    assert page.locator("#react-player .pdd-label").all_text_contents() == ["A · given", "B · generated"]
     page.get_by_role("button", name="Push").click()
     expect(line).to_contain_text("something else is shown now", timeout=SLOW)
     page.get_by_role("button", name="Push").click()

@@ -182,6 +182,8 @@ def test_errors_are_sentences_and_hostile_prompts_are_shown_literally(page: Page
         assert "Traceback" not in page.content()
     made(page, HOSTILE)
     expect(page.locator("#status .pd-warning").first).to_contain_text("<b>hello</b>")
+    page.locator("#prompt textarea").press_sequentially(" They bow.")
+    expect(page.locator("#status .pd-warning")).to_be_hidden()
     assert page.evaluate("window.hacked ?? null") is None
     assert page.locator("img[src='x']").count() == 0
 

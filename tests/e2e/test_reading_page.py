@@ -32,6 +32,10 @@ def test_words_are_underlined_and_chips_stand_on_two_lanes(page: Page) -> None:
     }
     assert lanes == {"1": "1", "2": "1"}
     expect(reading.locator(".pdr-chip").nth(1)).to_have_class("pdr-chip pdr-ab")
+    expect(reading.locator("button.pdr-chip").nth(1)).to_have_accessible_name(
+        "A and B: hug each other. Press to change."
+    )
+    expect(reading.get_by_role("status")).to_have_text("Acts understood: 2.")
     expect(reading.locator(".pdr-words.pdr-a.pdr-b")).to_contain_text("they hug")
     lines = "each => [getComputedStyle(each).textDecorationStyle, getComputedStyle(each).borderBottomStyle]"
     assert reading.locator(".pdr-words").last.evaluate(lines) == ["solid", "dashed"], (

@@ -49,6 +49,7 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.wait_for_selector("#scene-status .pd-done")
     page.wait_for_selector(".pds-cell")
     assert page.locator(".pds-lane-words .pds-cell").all_inner_texts() == ["They meet.", "They hug.", "They bow."]
+    assert page.locator(".pds-scroll").evaluate("each => each.scrollWidth === each.clientWidth")
 
     # The player's clock stands over the story's line, and both are as long.
     page.wait_for_function("document.querySelector('.pds').editor.shown === window.__pasdedeux.player.clock.duration")

@@ -86,7 +86,7 @@ def test_what_cannot_be_shown_is_said(engine: Engine) -> None:
     ):
         notes = " ".join(run(engine, replace(REQUEST, prompt=prompt)).notes)
         assert ("Not understood" in notes) is unread, prompt
-        assert "far from anything" not in notes or unread, prompt
+        assert "far from anything" not in notes or (unread and ".”." not in notes), prompt
 
 
 @pytest.mark.parametrize(

@@ -102,13 +102,15 @@ def test_an_edited_plan_counts_for_its_own_text_alone() -> None:
 def test_marks_are_of_the_acts_that_were_checked() -> None:
     rows = [
         {"act": "wave", "words": "They wave", "done": True, "measure": "", "unchecked": ["how often"]},
-        {"act": "hug", "words": "They hug", "done": False, "measure": "0.6 m apart"},
+        {"act": "hug", "words": "They hug", "done": False, "measure": "0.6 m apart", "unchecked": ["for long"]},
+        {"act": "laugh", "words": "B laughs", "done": None, "measure": "no rule", "wrote": "giggles"},
     ]
     assert checked("They wave, then they hug.", {"checked": rows, "unread": ["slowly"]}) == {
         "text": "They wave, then they hug.",
         "acts": [
             {"act": "wave", "done": None, "measure": "how often"},
             {"act": "hug", "done": False, "measure": "0.6 m apart"},
+            {"act": "laugh", "done": None, "measure": "read from “giggles”"},
         ],
         "unread": ["slowly"],
     }

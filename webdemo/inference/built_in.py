@@ -88,7 +88,7 @@ BUILT_IN = (
         label="Motion MLP",
         summary="A residual network over cosine coefficients, one second at a time. On 200 test windows of people it "
         "knows, it is 8.7 cm off after a second and 17 cm after two; the last pose, held, is 18 and 30 cm "
-        "off. Where people stop, holding is nearer.",
+        "off. Where people stop moving, the held pose is closer.",
         tasks=("predict",),
         takes=frozenset({"past"}),
         seconds=(0.5, 4.0),

@@ -61,9 +61,9 @@ test("people of a chip, for the eye and for the ear", () => {
   assert.deepEqual([people(hug), spoken(hug, "hug")], ["A + B", "A and B: hug"]);
 });
 
-test("a sentence on what was understood", () => {
-  assert.equal(summary({ acts: [1], unread: [] }), "1 act is understood.");
-  assert.equal(summary({ acts: [1, 2], unread: [1] }), "2 acts are understood, 1 part is not.");
+test("how much was understood", () => {
+  assert.equal(summary({ acts: [1], unread: [] }), "Acts understood: 1.");
+  assert.equal(summary({ acts: [1, 2], unread: [1] }), "Acts understood: 2. Not understood: 1.");
 });
 
 test("acts that are said alike are offered once, and an unknown one never", () => {

@@ -140,7 +140,7 @@ def test_predictions_by_several_methods_make_a_grid_with_their_pasts(tmp_path: P
     assert [cell["past_until"] for cell in sample["cells"]] == [45] * 3 + [60] * 3
     assert all(cell["ghost"] for cell in sample["cells"])
     assert "<b>from 1.5 s · " in last["readouts"]
-    assert last["readouts"].count("mm off on average") == 6
+    assert last["readouts"].count("cm off on average") == 6
     record: Record = last["record"]
     entry = Entry(id="x", kind="predict", title="t", state="done", request=record.result.manifest["request"])
     opened = [Opened(entry=entry, result=each) for each in record.compared.values()]

@@ -116,11 +116,11 @@ def test_errors_are_described_in_words_beside_those_of_the_last_pose(monkeypatch
     (near,) = error_lines(replace(result, error=(30.0,) * 30))
     (far,) = error_lines(replace(result, error=(80.0,) * 29 + (170.0,)))
     assert near == (
-        "Over 1.0 s the joints are 30 mm off on average, and 30 mm at the end. "
-        "Holding the last pose would have been 60 mm off."
+        "Over 1.0 s the joints are 3.0 cm off on average, and 3.0 cm at the end. "
+        "Holding the last pose would have been 6.0 cm off."
     )
-    assert "83 mm off on average, and 170 mm at the end" in far
-    assert "Holding the last pose would have been nearer: 60 mm." in far
+    assert "8.3 cm off on average, and 17.0 cm at the end" in far
+    assert "Holding the last pose would have been closer: 6.0 cm." in far
     (alone,) = error_lines(drift(PredictRequest(motion=walking(4.0), seconds=1.0)))
     assert "nothing to compare with" in alone
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import pytest
 
+from acts import read
 from motion.metrics import MEASURES
 from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.requests import GenerateRequest
@@ -70,6 +71,11 @@ def test_notes_of_several_results_stand_once_and_say_whose_they_are() -> None:
     one, other = (replace(result(), notes=("Both.", *more)) for more in ((), ("After 2.0 s it waves.",)))
     said = re.findall(r"pd-(note|warning).*?>([^<]+)<", notes_lines({"seed 1": one, "seed 2": other}))
     assert said == [("warning", "Both."), ("note", "seed 2: After 2.0 s it waves.")]
+    heard = read("Zwei Leute umarmen sich und tanzen.")
+    shown = replace(
+        one, notes=("Both.", *heard.notes), manifest={"plan": {"acts": [heard.model_dump()], "windows": []}}
+    )
+    assert heard.notes and notes_lines({"": shown}) == status("Both.", tone="warning"), "the reading says the rest"
 
 
 def test_measures_that_could_not_be_determined_are_dashes() -> None:

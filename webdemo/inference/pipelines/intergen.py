@@ -43,7 +43,7 @@ SMOOTHING = 1.0
 """Frames: σ of the Gaussian by which InterGen's release smooths its positions."""
 _FAR = (
     "This sentence is far from anything the model was trained on, so the motion may not match it. "
-    "The nearest thing it knows: “{}”."
+    "The nearest thing it knows is “{}”."
 )
 CONVERTED = (
     "InterGen's 262 numbers a person and frame became 22 joints: its positions were taken, its own rotations and "
@@ -149,7 +149,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         (touch,) = self.model.touches(condition)
         cosine, nearest = self.bank.nearest(vector)
         far = cosine < self.bank.far and not plan.acts
-        return Conditioning(condition, guidance, touch, (_FAR.format(nearest),) if far else ())
+        return Conditioning(condition, guidance, touch, (_FAR.format(nearest.rstrip(".")),) if far else ())
 
 
 def _unsplit(plan: KeptPlan, planned: bool) -> KeptPlan:

@@ -87,15 +87,15 @@ def error_lines(*results: PredictResult) -> list[str]:
             continue
         error, fps = np.asarray(result.error), result.duets[0].fps
         line = (
-            f"Over {len(error) / fps:.1f} s the joints are {error.mean():.0f} mm off on average, "
-            f"and {error[-1]:.0f} mm at the end."
+            f"Over {len(error) / fps:.1f} s the joints are {error.mean() / 10:.1f} cm off on average, "
+            f"and {error[-1] / 10:.1f} cm at the end."
         )
         still = still_error(result)[: len(error)].mean()
         if result.manifest.get("model") != "still":
             if still < error.mean():
-                line += f" Holding the last pose would have been nearer: {still:.0f} mm."
+                line += f" Holding the last pose would have been closer: {still / 10:.1f} cm."
             else:
-                line += f" Holding the last pose would have been {still:.0f} mm off."
+                line += f" Holding the last pose would have been {still / 10:.1f} cm off."
         lines.append(line)
     return lines
 

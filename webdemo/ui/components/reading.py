@@ -188,18 +188,14 @@ def checked(text: str, manifest: Mapping[str, Any]) -> dict[str, Any]:
         manifest: of the result, or of its first sample; ``checked`` has a row for each act in the order of the
             sentence, and ``unread`` the words that are in no act.
     """
-    rows = manifest.get("checked") or ()
-    acts = [{"act": row.get("act"), "done": _mark(row), "measure": _measured(row)} for row in rows]
+    acts = [_verdict(row) for row in manifest.get("checked") or ()]
     return {"text": text, "acts": acts, "unread": list(manifest.get("unread") or ())} if acts else {}
 
 
-def _mark(row: Mapping[str, Any]) -> bool | None:
-    """Whether an act was done; None where that, or a part of what was said of it, is not measured."""
-    return None if row.get("done") and (row.get("unchecked") or row.get("wrote")) else row.get("done")
-
-
-def _measured(row: Mapping[str, Any]) -> str:
-    if row.get("done") is not False and row.get("wrote"):
-        return f"“{row['wrote']}” was read as this"
-    measure = str(row.get("measure") or "")
-    return "; ".join(row.get("unchecked") or ()) or ("" if measure == NO_RULE else measure)
+def _verdict(row: Mapping[str, Any]) -> dict[str, Any]:
+    """An act's mark and the reason for it; ``done`` is None where a part of what was said is not measured."""
+    done, measure = row.get("done"), str(row.get("measure") or "")
+    left = [f"read from “{row['wrote']}”"] if row.get("wrote") else row.get("unchecked")
+    if left and done is not False:
+        done, measure = None, "; ".join(left)
+    return {"act": row.get("act"), "done": done, "measure": "" if measure == NO_RULE else measure}

@@ -39,8 +39,8 @@ PACE = 0.5
 """Seconds between two updates of the page while a run goes on; each costs a browser about ten milliseconds."""
 MOST_BACK = 20
 """Runs of a tab that can be gone back to."""
-_FORGIVEN = """() => document.querySelector("#%s .pd-error") ? "" : { __type__: "update" }"""
-"""JavaScript that takes an error away once something else is asked; to be filled with the id of the line."""
+_FORGIVEN = """() => document.querySelector("#%s :is(.pd-error, .pd-warning)") ? "" : { __type__: "update" }"""
+"""JavaScript that takes an error or warning away once something else is asked; to be filled with the line's id."""
 Named = dict[str, Any]
 """Updates by the names of a tab's outputs."""
 Watch = Callable[[Progress], Named | None]

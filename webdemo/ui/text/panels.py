@@ -8,6 +8,7 @@ from typing import Any
 
 from motion.metrics import MEASURES, Measure
 from webdemo.inference.run import Result
+from webdemo.inference.story.beats import kept_plan
 
 from .texts import say
 from .words import number, seconds, settings, text
@@ -50,11 +51,13 @@ def made_line(result: Result) -> str:
 
 
 def notes_lines(results: Mapping[str, Result]) -> str:
-    """The notes of results by name, but for verdicts on acts, each once: those of some only begin with their names."""
+    """The notes of results by name, each once, but for those that the reading under the prompt shows."""
     named: dict[str, list[str]] = {}
     for name, result in results.items():
+        plan = kept_plan(result.manifest)
+        read = {note for acts in plan.acts for note in acts.notes} if plan else set()
         for note in result.notes:
-            if not note.startswith(_VERDICT):
+            if note not in read and not note.startswith(_VERDICT):
                 named.setdefault(note, []).append(name)
     return "".join(
         status(
