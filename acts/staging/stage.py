@@ -150,7 +150,7 @@ class _Stage:
             caught = {who for act, e in self.done if e.thing == "catches" for who in act.agents}
             self.gestures = {who: gesture for who, gesture in self.gestures.items() if who not in caught}
         moves = self._moves(struck)
-        busy = {*self.gestures, *self.faces, *(move.person for move in self.moves)}
+        busy = {*self.gestures, *self.faces, *(move.person for move in (*self.moves, *moves) if move.way != "stay")}
         idle = standing_by(self.acts, self.done, busy, self.known)
         waving = gesturing(self.gestures, moves, self.done)
         linked = self.linked or any(move.linked for move in self.moves)

@@ -32,6 +32,7 @@ def test_shapes_of_several_acts_make_one_beat() -> None:
     assert not both.idle and not score("They sit facing each other.").going
     assert score("Person A salutes.").idle == {"b"}, "who does nothing beside a gesture stands by"
     assert not score("Person A hugs person B.").idle
+    assert not score("He chases her until she stops.").idle, "who is followed until they stop goes first"
 
 
 @pytest.mark.parametrize("text", ["A drinks.", "B sips her tea.", "He eats an apple."])
