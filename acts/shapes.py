@@ -104,14 +104,14 @@ class Posture(_Shape):
     """A way to hold oneself from then on.
 
     Attributes:
-        posture: which.
+        posture: by its name in ``acts/staging/figures.toml``.
         already: from the start.
         passing: only for a moment, ``times`` over.
         gently: somebody lets themselves down on the floor, and does not fall.
     """
 
     do: Literal["posture"] = "posture"
-    posture: Literal["stands", "sits", "kneels", "sits on the ground", "crouches", "bends down", "lies", "on all fours"]
+    posture: Annotated[str, _Named("figures", tables=("postures",))]
     already: bool = False
     passing: bool = False
     times: Annotated[int, Field(ge=1, le=5)] = 1

@@ -5,7 +5,7 @@ words leave it open, a take draws where and how people begin."""
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -22,7 +22,7 @@ from .floor import ABREAST, BEHIND, CLOSE, CREEPS, LINKED
 from .holds import TWIRL
 from .lifts import takes_hold
 from .places import Standing, Way2D, eased
-from .poses import JOINT, Pose, grounded, seated, upright
+from .poses import JOINT, Pose, posed, upright
 from .score import Lift, Move, Score, at_start, goes, leaving
 from .strikes import BOUTS
 from .window import Part, Stretch
@@ -39,7 +39,8 @@ REACH = 0.75
 """Metres between two people one of whom touches the other."""
 _START = {"away": 1.1, "thing": 1.1, "past": 2.2, "around": 1.2, "back": 0.9}
 """Metres between two people at the beginning of a first beat with such a move."""
-_SEATS = {"sits": seated, "sits on the ground": grounded}
+_SEATS = ("sits", "sits on the ground")
+"""Postures in which backs can touch."""
 
 
 def beginning(scores: Sequence[Score], lengths: Sequence[float]) -> Standing:
@@ -87,7 +88,7 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
         facing = math.pi if ways["past"].person == "a" else 0.0  # both look the same way
         return Standing(np.array([[0.0, 0.0], [0.0, _START["past"]]]), np.full(2, facing))
     if "back to back" in ways:
-        return _back_to_back(upright)
+        return _back_to_back("stands")
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
     if "past" in ways and ways["past"].speed <= CREEPS:
         gap = min(gap, max(0.55 * seconds * ways["past"].speed, 1.2))
@@ -110,7 +111,7 @@ def placed(score: Score) -> Standing | None:
     """The places of two people in a first beat; None where it leaves them free."""
     if score.side == "back to back":
         postures = [change.posture for listed in score.changes.values() for change in listed]
-        return _back_to_back(next((_SEATS[posture] for posture in postures if posture in _SEATS), upright))
+        return _back_to_back(next((posture for posture in postures if posture in _SEATS), "stands"))
     if score.side == "beside":
         return Standing(np.array([[0.0, 0.0], [-(score.apart or ABREAST), 0.0]]), np.zeros(2))
     lift, strike = score.lift, score.strike
@@ -126,9 +127,9 @@ def placed(score: Score) -> Standing | None:
     return None
 
 
-def _back_to_back(pose: Callable[[Array, float], Array]) -> Standing:
-    """The places of two whose backs touch in a pose; the feet are where they stand."""
-    apart = BACKS - 2 * float(pose(np.zeros(2), 0.0)[0, 2])
+def _back_to_back(posture: str) -> Standing:
+    """The places of two whose backs touch in a posture; the feet are where they stand."""
+    apart = BACKS - 2 * float(posed(posture, np.zeros(2), 0.0)[0, 2])
     return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
 
 

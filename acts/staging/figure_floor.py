@@ -6,25 +6,18 @@ them carries it.
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Mapping
-from pathlib import Path
-
 import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from motion import FPS
 from motion.limbs import solve_two_bones
-from motion.skeleton import ARMS, HEAD_TOP, LEGS, TOES
+from motion.skeleton import ARMS, LEGS, SIDES, TOES
 from motion.smoothing import minimum_jerk
 from motion.transforms import facing, heading_matrix
-from motion.vectors import FLAT, Array
+from motion.vectors import FLAT, Array, direction, floor_points
 
-from .poses import BOTH_SIDES, JOINT, STANCE, Turns, about, ahead_of, poses_of
+from .poses import CLEARANCES, JOINT, NAMES, STANCE, bodies, gaps
 
-_CLEAR = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))["skin"]
-"""Metres from a joint to the skin below it, on which a body lies or stands."""
-_CLEARANCES = np.array([_CLEAR[name.split("_")[-1]] for name in JOINT])
 _SHARED = 0.008
 """Metres over the lowest joint within which others carry the body with it."""
 _EVEN = 1.5
@@ -36,64 +29,36 @@ _HOLDS, _BLEND = 5, 5
 """Frames for which it stands at least, and over which it is led to its spot."""
 
 
-def grounded_poses(angles: Mapping[str, Array], place: Array, angle: float) -> Array:
+def grounded_poses(angles: Array, place: Array, angle: float) -> Array:
     """Poses on the floor, from angles over time; the first one has its feet where a standing person has them.
 
     Args:
-        angles: (N,) radians and metres by the names of :data:`.figures.NAMES`.
+        angles: (N, len(NAMES)) radians and metres, in the order of :data:`.poses.NAMES`.
         place: (2,) x and z of the pelvis of the person who stands there, in metres.
         angle: heading in radians from +Z towards +X.
 
     Returns:
         (N, 22, 3) metres, one pose a frame.
     """
-    poses = poses_of(_turns(angles, angle), len(angles["pitch"]))
-    gaps = _gaps(poses)
-    for side, _ in BOTH_SIDES:
-        gaps[:, [JOINT[f"{side}_{name}"] for name in _LEG]] += angles[f"{side}_free"][:, None]
-    height = -gaps.min(axis=1)
-    root = _rolled(poses, gaps + height[:, None])
+    poses, of = bodies(angles, angle), dict(zip(NAMES, angles.T, strict=True))
+    over = gaps(poses)
+    for side in SIDES:
+        over[:, [JOINT[f"{side}_{name}"] for name in _LEG]] += of[f"{side}_free"][:, None]
+    height = -over.min(axis=1)
+    root = _rolled(poses, over + height[:, None])
     root[:, 1] = height
     root = _evened(root)
     root[:, 1] += _evened(scipy.ndimage.maximum_filter1d(np.maximum(height - root[:, 1], 0.0), 3))
-    root[:, 1] += angles["rise"]
+    root[:, 1] += of["rise"]
     ahead, left = (heading_matrix(angle)[:, axis] for axis in (2, 0))
-    root += angles["ahead"][:, None] * ahead + angles["aside"][:, None] * left
+    root += of["ahead"][:, None] * ahead + of["aside"][:, None] * left
     poses = poses + root[:, None]
-    return _staying(poses + ahead_of(place, angle, STANCE) - poses[0, TOES].mean(axis=0) * FLAT)
+    return _staying(poses + floor_points(place + STANCE * direction(angle)) - poses[0, TOES].mean(axis=0) * FLAT)
 
 
 def _evened(values: Array) -> Array:
     """Values (N, …) over time without kinks."""
     return np.asarray(scipy.ndimage.gaussian_filter1d(values, _EVEN, axis=0, mode="nearest"))
-
-
-def _turns(angles: Mapping[str, Array], angle: float) -> Turns:
-    """Rotations (N, 3, 3) of the joints against their parents."""
-    trunk = about(2, -angles["lean"] / 3) @ about(0, angles["spine"] / 3) @ heading_matrix(angles["twist"] / 3)
-    head = about(2, -angles["tilt"] / 2) @ about(0, angles["neck"] / 2) @ heading_matrix(angles["look"] / 2)
-    pelvis = heading_matrix(angle) @ heading_matrix(angles["yaw"])
-    turns: Turns = {"pelvis": pelvis @ about(2, -angles["roll"]) @ about(0, angles["pitch"])}
-    turns |= dict.fromkeys(("spine1", "spine2", "spine3"), trunk) | dict.fromkeys(("neck", "head"), head)
-    for side, sign in BOTH_SIDES:
-        own = {name.removeprefix(f"{side}_"): value for name, value in angles.items() if side in name}
-        spread, turned = about(2, sign * own["out"]), heading_matrix(sign * own["turnout"])
-        hangs = about(2, -sign * (np.pi / 2 - own["side"]))
-        turns[f"{side}_hip"] = turned @ about(0, -own["hip"]) @ spread
-        turns[f"{side}_knee"] = about(0, own["knee"])
-        turns[f"{side}_ankle"] = about(0, own["ankle"])
-        turns[f"{side}_collar"] = about(2, sign * own["shrug"])
-        turns[f"{side}_shoulder"] = about(0, -own["arm"]) @ hangs @ about(0, own["rotate"])
-        turns[f"{side}_elbow"] = heading_matrix(-sign * own["elbow"])
-    return turns
-
-
-def _gaps(poses: Array) -> Array:
-    """(N, 23) metres of the skin at each joint, and of the top of the head, over the height of the pelvis."""
-    neck, head = (poses[:, JOINT[name]] for name in ("neck", "head"))
-    up = (head - neck)[:, 1] / np.linalg.norm(head - neck, axis=1).clip(min=1e-6)
-    crown = head[:, 1] + HEAD_TOP * up
-    return np.concatenate([poses[..., 1] - _CLEARANCES, crown[:, None]], axis=1)
 
 
 def _rolled(poses: Array, over: Array) -> Array:
@@ -117,7 +82,7 @@ def _staying(poses: Array) -> Array:
     for limbs, pole in ((ARMS, backward), (LEGS, forward)):
         for root, middle, end, *toe in limbs:
             tip = toe[0] if toe else end
-            shift = _to_its_spot(poses[:, tip], float(_CLEARANCES[tip]))
+            shift = _to_its_spot(poses[:, tip], float(CLEARANCES[tip]))
             moved = np.flatnonzero(np.abs(shift).sum(axis=1) > 0)
             first, second, third = (poses[moved, joint] for joint in (root, middle, end))
             bent, put = solve_two_bones(first, second, third, third + shift[moved], pole[moved], soft=0.01)

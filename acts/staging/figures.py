@@ -1,17 +1,15 @@
 """Figures: what a body does key by key, such as a push-up, a kick, a raised leg or a nod, and its course over a beat.
 
-No caption of the training data names them. ``figures.toml`` has them as poses, given by the angles of joints, and the
-seconds from one to the next; :mod:`.figure_floor` puts the body on the floor. Those of limbs go together,
+No caption of the training data names them. ``figures.toml`` has them as poses (:mod:`.poses`) and the seconds from one
+to the next; :mod:`.figure_floor` puts the body on the floor. Those of limbs go together,
 and what they do not move is as it is of people who wait.
 """
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -21,36 +19,25 @@ from numpy.typing import NDArray
 from acts.shapes import Figure
 from motion import FPS
 from motion.kinematics import swing
-from motion.skeleton import ARMS, SIDES
+from motion.skeleton import ARMS
 from motion.smoothing import minimum_jerk
 from motion.transforms import heading, heading_matrix
 from motion.vectors import Array
 
 from .figure_floor import grounded_poses
 from .places import Way2D
-from .poses import ALL, HANDS, JOINT, LOWER, TRUNK, UPRIGHT, Pose, all_but
+from .poses import ALL, FILE, HANDS, JOINT, LOWER, NAMES, PAIRED, TRUNK, UPRIGHT, Pose, all_but, angles_of
 from .postures import RISING, posture_joints, postures
 from .recordings import LEGS, has_takes, performing, standing_by
 from .score import Change, Score
 from .window import OFTEN, SETTLES, Part, Stretch, late_by
 
-SINGLE = ("pitch", "roll", "yaw", "spine", "lean", "twist", "neck", "tilt", "look")
-"""Degrees by which the pelvis is pitched forward, rolled to the left and turned to the left, by which the trunk is bent
-forward, leant to the left and twisted to the left, and by which the head is bent, tilted and turned likewise."""
-METRES = ("rise", "ahead", "aside")
-"""Metres of the lowest joint over the floor, and of the body ahead and to the left of where it would be."""
-PAIRED = ("hip", "out", "turnout", "knee", "ankle", "shrug", "arm", "side", "rotate", "elbow", "free")
-"""Degrees by which a thigh is turned out, raised and spread, a knee bent, toes pointed, a shoulder shrugged, an arm
-raised forward, spread and turned in, an elbow bent; "free" is 1 for a leg that does not carry the body, as it swings
-past the floor. A number for both sides, or [left, right]."""
-NAMES = (*SINGLE, *METRES, *(f"{side}_{name}" for side in SIDES for name in PAIRED))
 _ASIDE = tuple(NAMES.index(name) for name in ("roll", "yaw", "lean", "twist", "tilt", "look", "aside"))
 """Those that change their sign in a mirror."""
 _LEFT, _RIGHT = (
     slice(start, start + len(PAIRED)) for start in (len(NAMES) - 2 * len(PAIRED), len(NAMES) - len(PAIRED))
 )
 _OF_HEAD, _OF_ARMS = frozenset(("neck", "tilt", "look")), frozenset(("arm", "side", "rotate", "elbow"))
-_STANCE = {"hip": 3.4, "out": -1.1, "knee": 6.9, "ankle": -3.4, "side": 9.8, "elbow": 17.2}
 BEGINS, RESTS = 0.3, 0.15
 """Seconds of a beat before a figure begins, and after it."""
 FASTEST, SLOWEST = 0.75, 1.25
@@ -72,10 +59,9 @@ _SEEN = 6
 """Frames between two poses of a figure that are looked at for the room that it needs."""
 _HOLDS, _WAITS = 0.5, {"in": 0.2}
 """Seconds for which a limb is held, over and over, and the row of what comes before it and after it."""
-_FILE = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))
-LIMBS = frozenset(_FILE["limbs"])
+LIMBS = frozenset(FILE["limbs"])
 """Movements of limbs, trunk or head, which leave the rest of the body as it is."""
-_HELD = frozenset(name for name, rows in _FILE["limbs"].items() if len(rows) == 1)
+_HELD = frozenset(name for name, rows in FILE["limbs"].items() if len(rows) == 1)
 
 
 class Keys(NamedTuple):
@@ -95,15 +81,12 @@ class Keys(NamedTuple):
 @lru_cache(maxsize=1)
 def figures() -> Mapping[str, Keys]:
     """All figures by name."""
-    poses = {"stand": {}, **_FILE["poses"]}
-    rows = {
-        name: [parts.get(part, ()) for part in ("into", "again", "out")] for name, parts in _FILE["figures"].items()
-    }
-    for name, listed in _FILE["limbs"].items():
+    rows = {name: [parts.get(part, ()) for part in ("into", "again", "out")] for name, parts in FILE["figures"].items()}
+    for name, listed in FILE["limbs"].items():
         first, back = listed[0], {"in": listed[0]["in"]}
         held = [[_WAITS, first], [first | {"in": _HOLDS}], [back, _WAITS]]
         rows[name] = held if name in _HELD else [[], listed, [back]]
-    return {name: Keys(*(_keys(part, poses) for part in parts)) for name, parts in rows.items()}
+    return {name: Keys(*(_keys(part) for part in parts)) for name, parts in rows.items()}
 
 
 def figured(listed: Sequence[Figure], place: Array, angle: float, frames: int) -> Array:
@@ -120,7 +103,7 @@ def figured(listed: Sequence[Figure], place: Array, angle: float, frames: int) -
     """
     moved = np.stack([_course(figure, frames) - _STANDS for figure in listed])
     course = _STANDS + moved.max(axis=0).clip(min=0) + moved.min(axis=0).clip(max=0)
-    return grounded_poses(dict(zip(NAMES, course.T, strict=True)), place, angle)
+    return grounded_poses(course, place, angle)
 
 
 def _course(figure: Figure, frames: int) -> Array:
@@ -147,7 +130,7 @@ def _scheduled(figure: Figure, length: float) -> tuple[Array, Array]:
     course, times, late = figures()[figure.figure], figure.times, min(figure.late, length / 4)
     if times and figure.figure in _HELD:  # up and back so many times
         steps, rows = (np.concatenate(each) for each in zip(*course, strict=True))
-        course = Keys(_keys((), {}), (steps, rows), _keys((), {}))
+        course = Keys(_keys(()), (steps, rows), _keys(()))
     room = max(length - late - BEGINS - RESTS, 0.1)
     cycle = float(course.again[0].sum())
     frame = float(course.into[0].sum() + course.out[0].sum())
@@ -175,29 +158,13 @@ def _cut(steps: Array, rows: Array, room: float) -> tuple[Array, Array]:
     return np.concatenate([steps, steps[::-1]]), np.concatenate([rows, back])
 
 
-def _keys(rows: Sequence[Mapping[str, Any]], poses: Mapping[str, Any]) -> tuple[Array, Array]:
+def _keys(rows: Sequence[Mapping[str, Any]]) -> tuple[Array, Array]:
     """Seconds (N,) and angles (N, angles) of a part of a figure."""
-    if not rows:
-        return np.zeros(0), np.zeros((0, len(NAMES)))
-    return np.array([float(row["in"]) for row in rows]), np.concatenate([_row(row, poses) for row in rows])
+    angles = [angles_of(row) for row in rows]
+    return np.array([float(row["in"]) for row in rows]), np.array(angles).reshape(-1, len(NAMES))
 
 
-def _row(row: Mapping[str, Any], poses: Mapping[str, Any]) -> Array:
-    """The angles (1, angles) in radians of a row: those of its pose, with what it says beside."""
-    said = _STANCE | poses[row.get("pose", "stand")] | {k: v for k, v in row.items() if k not in ("in", "pose")}
-    angles = np.zeros(len(NAMES))
-    for name, value in said.items():
-        if name in METRES:
-            angles[NAMES.index(name)] = value
-        elif name in SINGLE:
-            angles[NAMES.index(name)] = np.deg2rad(value)
-        else:
-            for side, own in zip(SIDES, np.broadcast_to(value, 2), strict=True):
-                angles[NAMES.index(f"{side}_{name}")] = own if name == "free" else np.deg2rad(own)
-    return angles[None]
-
-
-_STANDS = _row({}, {"stand": {}})
+_STANDS = angles_of({})[None]
 
 
 def _mirrored(rows: Array) -> Array:

@@ -7,10 +7,11 @@ given, and the trunk and head of those who lie or bend down.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 
 from motion import FPS
 from motion.skeleton import TOES
@@ -18,27 +19,9 @@ from motion.smoothing import minimum_jerk
 from motion.transforms import heading
 from motion.vectors import Array, direction
 
+from .figure_floor import grounded_poses
 from .places import EVENLY, HALT, Standing
-from .poses import (
-    ALL,
-    HANDS,
-    JOINT,
-    LOWER,
-    LYING,
-    STANCE,
-    UPRIGHT,
-    Pose,
-    all_but,
-    crouching,
-    grounded,
-    kneeling,
-    lying,
-    rising,
-    seated,
-    stooping,
-    upright,
-)
-from .recordings import on_all_fours
+from .poses import ALL, HANDS, JOINT, LOWER, STANCE, UPRIGHT, Pose, all_but, angles_of, placed, posed, upright
 from .score import Change, Score, at_start
 from .window import GETS_DOWN, Part, Stretch
 
@@ -50,21 +33,16 @@ DUCKING = 16
 """Frames in which somebody ducks, and as many in which they are up again."""
 LOW = 0.5
 """Metres of the head over the pelvis below which somebody lies or is bent."""
-_DROPS = 0.6
+_DROPS = 1.7
 """Exponent of the time of a fall, which begins slowly."""
+_LYING = 0.6
+"""Metres from where somebody stood to the pelvis when they lie."""
 _HEAD = JOINT["head"]
-_LOW = ("lies", "sits on the ground")
-"""Postures from which people sit up and get their feet under them before they stand."""
-_MAKES: Mapping[str, Callable[[Array, float], Array]] = {
-    "stands": upright,
-    "sits": seated,
-    "sits on the ground": grounded,
-    "kneels": kneeling,
-    "crouches": crouching,
-    "bends down": stooping,
-    "lies": lying,
-    "on all fours": on_all_fours,
+_RISES: Mapping[str, Sequence[tuple[float, str]]] = {
+    "lies": ((0.45, "sits up"), (0.75, "crouches")),
+    "sits on the ground": ((0.25, "sits up"), (0.6, "crouches")),
 }
+"""Postures from which people sit up and get their feet under them before they stand: shares of the time, and poses."""
 
 
 def postures(
@@ -84,63 +62,61 @@ def postures(
     now = at_start(scores, beat)[who]
     own = [change for change in score.changes.get(who, ()) if not change.already]
     if last is not None and now != "stands" and last[0, 1] > UPRIGHT:  # as in a given motion
-        now, own = "stands", [Change.model_validate({"posture": now}), *own]
+        now, own = "stands", [Change(posture=now), *own]
     if now == "stands" and not own:
         return [(start, upright(*_place(person, stand, None)))] if last is None and score.changes else []
     place, angle = _place(person, stand, last)
     if last is None and now == "lies":  # across the other's way, and not with the feet towards them
         angle += math.pi / 2
-        place = place + LYING * direction(angle)
+        place = place + _LYING * direction(angle)
     poses: dict[int, Array] = {}
     begins = start + 1 if last is not None else start
-    pose = _MAKES[now](place, angle) if last is None or now == "stands" else last
+    pose = posed(now, place, angle) if last is None or now == "stands" else last
     for change in own:
         at = start + round(change.after * (stop - start))
         if last is None and now != "stands":
             at = max(at, start + round(FPS))  # they are seen as they were
         if now != "stands" or (last is None and begins == start):
             poses |= _stays(pose, begins, at + 1)
+        goals = [(min(at + _frames(now, change), stop - 1), change.posture)]
         if change.passing:
             middle = min(at + DUCKING + (stop - at) // 4, stop - DUCKING)
-            poses |= {middle: _MAKES[change.posture](place, angle), middle + DUCKING: upright(place, angle)}
-            begins = middle + DUCKING
-            continue
-        ends, on_the_way = _on_the_way(now, change, at, stop, place, angle)
-        poses |= on_the_way
-        now, pose, begins = change.posture, _MAKES[change.posture](place, angle), ends
+            goals = [(middle, change.posture), (middle + DUCKING, "stands")]
+        for ends, then in goals:
+            falls = now == "stands" and then == "lies" and not change.gently
+            way = placed(changing(now, then, max(ends - at, 1), falls=falls), place, angle)
+            way += np.linspace(1, 0, len(way))[:, None, None] * (pose - way[0])
+            poses |= {at + i: way[i] for i in {*range(0, len(way), EVENLY), len(way) - 1}}
+            now, pose, at = then, way[-1], ends
+        begins = at
     poses |= _stays(pose, begins, stop)
-    listed = [(frame, poses[frame]) for frame in sorted(poses) if start <= frame < stop]
-    return sorted([*listed, *_in_between(listed)], key=lambda pose: pose[0])
+    return [(frame, poses[frame]) for frame in sorted(poses) if start <= frame < stop]
 
 
-def _in_between(poses: Sequence[Pose]) -> Iterator[Pose]:
-    """Poses on the way down, up and from one low pose to another, on which the network would rise or sink at will."""
-    for (first, pose), (last, then) in pairwise(poses):
-        if min(pose[0, 1], then[0, 1]) <= UPRIGHT:
-            for frame in range(first + EVENLY, last, EVENLY):
-                yield frame, pose + float(minimum_jerk((frame - first) / (last - first))) * (then - pose)
+def _frames(now: str, change: Change) -> int:
+    """The frames in which somebody in one posture changes to another."""
+    if change.posture == "stands":
+        return RISING if now in _RISES else GETS_DOWN
+    if not change.gently:
+        return GETS_DOWN
+    return LYING_DOWN if change.posture == "lies" else RISING
 
 
-def _on_the_way(
-    now: str, change: Change, at: int, stop: int, place: Array, angle: float
-) -> tuple[int, dict[int, Array]]:
-    """The frame at which a change of posture is over that begins ``at`` one, and the poses on the way."""
-    lies = "lies" in (now, change.posture)
-    if now in _LOW and change.posture == "stands":
-        ends = min(at + RISING, stop - 1)
-        return ends, {at + round(share * (ends - at)): pose for share, pose in rising(place, angle, lies=lies)}
-    ends = min(at + GETS_DOWN, stop - 1)
-    if {now, change.posture} == {"bends down", "stands"}:
-        shares = minimum_jerk(np.arange(EVENLY, ends - at, EVENLY) / (ends - at))
-        down = shares if change.posture == "bends down" else 1 - shares
-        return ends, {at + EVENLY * (i + 1): stooping(place, angle, float(share)) for i, share in enumerate(down)}
-    falls = lies and not change.gently
-    if now != "stands" or change.posture not in _LOW or not (change.gently or falls):
-        return ends, {}
-    ends = min(at + (GETS_DOWN if falls else LYING_DOWN if lies else RISING), stop - 1)
-    pace = _DROPS if falls else 1.0
-    on_the_way = reversed(rising(place, angle, lies=lies))
-    return ends, {at + round((1 - share) ** pace * (ends - at)): pose for share, pose in on_the_way}
+@lru_cache(maxsize=64)
+def changing(first: str, last: str, frames: int, *, falls: bool = False) -> Array:
+    """The way from one posture to another: poses (frames + 1, 22, 3) of a person who stood at the origin, facing +Z.
+
+    Who ``falls`` gets faster and faster.
+    """
+    up = _RISES.get(first, ()) if last == "stands" else ()
+    down = [(1 - at, pose) for at, pose in reversed(_RISES.get(last, ()))] if first == "stands" else []
+    times, names = zip(*((0.0, first), *up, *down, (1.0, last)), strict=True)
+    time: Array = np.linspace(0, 1, frames + 1)
+    share: Array = time**_DROPS if falls else minimum_jerk(time)
+    rows = np.stack([angles_of({"pose": name}) for name in names])
+    poses = grounded_poses(scipy.interpolate.PchipInterpolator(times, rows)(share), np.zeros(2), 0.0)
+    begins, ends = (posed(name, np.zeros(2), 0.0)[0] - poses[at, 0] for name, at in ((first, 0), (last, -1)))
+    return np.asarray(poses + ((1 - share)[:, None] * begins + share[:, None] * ends)[:, None])
 
 
 def posture_parts(poses: list[Pose], person: int, score: Score, stretch: Stretch, tail: int) -> list[Part]:

@@ -312,11 +312,6 @@ def walking(course: Course, seed: int, gait: str = "") -> tuple[Array, Array]:
     return walks, placed(sampled(strides.poses, at), course.places, course.headings)
 
 
-def on_all_fours(place: Array, angle: float) -> Array:
-    """Somebody on hands and knees, the pelvis over a place (x, z) and the face to a heading: (22, 3) metres."""
-    return placed(_read_gaits("crawls")[0].poses[:1], place, angle)[0]
-
-
 def carried(carry: str, places: Array, headings: Array) -> tuple[Array, Array]:
     """The poses of a person carried, and the carrier's.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.staging.poses import lying, seated, stooping
+from acts.staging.poses import posed
 from acts.staging.postures import posture_joints
 from motion import SMPL22
 from motion.kinematics import bone_lengths
@@ -87,15 +87,15 @@ def test_who_lies_is_given_the_trunk_and_who_sits_the_legs_alone() -> None:
         return {f"{side}_{joint}" for side in ("left", "right") for joint in joints}
 
     given = {}
-    for make in (lying, stooping, seated):
-        ((joints, frames, poses),) = posture_joints([(3, make(np.zeros(2), 0.0))], 0, 10)
+    for name in ("lies", "bends down", "sits"):
+        ((joints, frames, poses),) = posture_joints([(3, posed(name, np.zeros(2), 0.0))], 0, 10)
         assert list(frames) == [3] and poses.shape == (1, SMPL22.num_joints, 3)
-        given[make] = {SMPL22.joint_names[joint] for joint in joints}
-    assert given[lying] == given[stooping] > given[seated]
-    assert {"pelvis", "left_ankle", "right_foot"} < given[seated]
-    ((joints, *_),) = posture_joints([(3, stooping(np.zeros(2), 0.0))], 0, 10, arms=True)
-    assert {SMPL22.joint_names[joint] for joint in joints} - given[stooping] == sided("elbow", "wrist")
-    assert given[lying] - given[seated] == {"spine2", "spine3", "neck", "head"} | sided("collar", "shoulder")
+        given[name] = {SMPL22.joint_names[joint] for joint in joints}
+    assert given["lies"] == given["bends down"] > given["sits"]
+    assert {"pelvis", "left_ankle", "right_foot"} < given["sits"]
+    ((joints, *_),) = posture_joints([(3, posed("bends down", np.zeros(2), 0.0))], 0, 10, arms=True)
+    assert {SMPL22.joint_names[joint] for joint in joints} - given["bends down"] == sided("elbow", "wrist")
+    assert given["lies"] - given["sits"] == {"spine2", "spine3", "neck", "head"} | sided("collar", "shoulder")
 
 
 def test_who_lies_from_the_start_lies_across_the_way_of_the_other(engine: Engine) -> None:

@@ -10,7 +10,7 @@ import pytest
 from acts import read
 from acts.staging.beginnings import BODY, distance, roomy
 from acts.staging.places import Standing
-from acts.staging.poses import bending, lying, upright
+from acts.staging.poses import bending, posed, upright
 from acts.staging.postures import postures
 from acts.staging.score import Score
 from acts.staging.stage import score_of
@@ -99,11 +99,11 @@ def test_the_heads_of_two_who_bow_are_counted_to_their_tops() -> None:
 
 def test_who_gets_up_sits_up_first_and_keeps_the_feet_low() -> None:
     stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
-    last = lying(np.zeros(2), 0.0)
+    last = posed("lies", np.zeros(2), 0.0)
     poses = dict(postures(score("Person A falls over.", "Person A gets up."), 1, 0, 60, 180, stand, last))
     frames = sorted(poses)
     heights = [poses[f][0, 1] for f in frames]
-    assert np.diff(heights).min() > -0.01 and heights[-1] > 0.9
+    assert np.diff(heights).min() > -0.02 and heights[-1] > 0.9
     trunks = [poses[f][SMPL22.index("head"), 1] - poses[f][0, 1] for f in frames]
     assert np.diff(trunks).min() > -0.05, "the trunk rises as a whole"
     upright_from = next(i for i, trunk in enumerate(trunks) if trunk > 0.55)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from acts.staging.poses import kneeling, lying, upright
+from acts.staging.poses import posed, upright
 from motion import SMPL22
 from motion.kinematics import bone_lengths
 from motion.limbs import bent_towards, solve_two_bones
@@ -69,7 +69,7 @@ LIMBS = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part i
 def falling(deep: float) -> Array:
     """(40, 22, 3) a person who lies and sinks by so many metres and comes back."""
     sunk = deep * np.sin(np.linspace(0, np.pi, 40)) ** 2
-    return lying(HERE, 0.3)[None] - sunk[:, None, None] * [0.0, 1.0, 0.0]
+    return posed("lies", HERE, 0.3)[None] - sunk[:, None, None] * [0.0, 1.0, 0.0]
 
 
 @pytest.mark.parametrize("deep", [0.1, 0.4])
@@ -84,7 +84,7 @@ def test_a_body_that_sinks_into_the_floor_is_raised_without_a_jolt(deep: float) 
 
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_only_an_arm_in_the_floor_is_turned(side: str) -> None:
-    pose = lying(HERE, 0.0)
+    pose = posed("lies", HERE, 0.0)
     shoulder, elbow, wrist = (SMPL22.index(f"{side}_{part}") for part in ("shoulder", "elbow", "wrist"))
     down = np.array([0.3, -0.9, 0.1]) / np.linalg.norm([0.3, -0.9, 0.1])
     pose[elbow] = pose[shoulder] + SMPL22.bone_lengths[elbow] * down
@@ -97,7 +97,7 @@ def test_only_an_arm_in_the_floor_is_turned(side: str) -> None:
 
 
 def test_an_elbow_in_the_floor_is_turned_up_to_the_floor_and_no_farther() -> None:
-    pose = np.stack([lying(HERE, 0.0)] * 3)
+    pose = np.stack([posed("lies", HERE, 0.0)] * 3)
     shoulder, elbow, wrist = (SMPL22.index(f"left_{part}") for part in ("shoulder", "elbow", "wrist"))
     arm = (pose[:, shoulder], pose[:, elbow], pose[:, wrist])
     pose[:, elbow], pose[:, wrist] = solve_two_bones(*arm, arm[0] + [0.3, 0.0, 0.0], np.array([0.0, -1.0, 0.0]))
@@ -107,7 +107,7 @@ def test_an_elbow_in_the_floor_is_turned_up_to_the_floor_and_no_farther() -> Non
 
 
 def test_an_elbow_that_went_through_the_floor_goes_over_its_arm() -> None:
-    pose = np.stack([lying(HERE, 0.0)] * 60)
+    pose = np.stack([posed("lies", HERE, 0.0)] * 60)
     shoulder, elbow, wrist = (SMPL22.index(f"left_{part}") for part in ("shoulder", "elbow", "wrist"))
     arm = (pose[:, shoulder], pose[:, elbow], pose[:, wrist])
     turns = np.linspace(0.4 * np.pi, 1.6 * np.pi, 60)
@@ -119,7 +119,7 @@ def test_an_elbow_that_went_through_the_floor_goes_over_its_arm() -> None:
     assert raised[:, elbow, 1].max() > pose[0, elbow, 1], "over the top"
 
 
-@pytest.mark.parametrize("pose", [upright(HERE, 1.0), kneeling(HERE, 0.0), lying(HERE, 2.0)])
+@pytest.mark.parametrize("pose", [upright(HERE, 1.0), posed("kneels", HERE, 0.0), posed("lies", HERE, 2.0)])
 def test_who_is_above_the_floor_stays(pose: Array) -> None:
     still = np.stack([pose] * 3)
     np.testing.assert_allclose(above_floor(still), still, atol=1e-9)

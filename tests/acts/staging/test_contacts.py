@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from acts.shapes import Part
-from acts.staging.poses import bending, kneeling, lying, upright
+from acts.staging.poses import bending, posed, upright
 from acts.staging.score import Touch
 from acts.staging.touches import beside, kneels, lean, middle, reach, touched, touching
 from motion import SMPL22
@@ -47,7 +47,7 @@ def test_a_named_hand_touches_and_a_touch_may_come_late() -> None:
 @pytest.mark.parametrize("part", ["head", "shoulder", "back", "chest", "arm", "hand"])
 def test_a_hand_that_comes_near_is_at_the_joint(part: Part) -> None:
     touch = Touch(person="a", part=part, hands="right")
-    for pose in (upright(ORIGIN, np.pi), kneeling(ORIGIN, np.pi)):
+    for pose in (upright(ORIGIN, np.pi), posed("kneels", ORIGIN, np.pi)):
         apart = reach(touch, pose)
         assert 0.3 < apart < 1.0
         head = pose[SMPL22.index("head")] if part == "head" else pose[0]
@@ -60,7 +60,7 @@ def test_a_hand_that_comes_near_is_at_the_joint(part: Part) -> None:
 
 @pytest.mark.parametrize("part", ["head", "shoulder", "chest", "leg", "foot"])
 def test_who_touches_a_person_who_lies_kneels_down_beside_them(part: Part) -> None:
-    touch, pose = Touch(person="a", part=part, hands="right"), lying(ORIGIN, 0.0)
+    touch, pose = Touch(person="a", part=part, hands="right"), posed("lies", ORIGIN, 0.0)
     heading = beside(pose, np.array([2.0, -1.0]))
     assert heading is not None and abs(heading + np.pi / 2) < 0.01, "across the body, from their side of it"
     place = middle(touch, pose)[[0, 2]] + reach(touch, pose) * np.array([1.0, 0.0])
@@ -94,7 +94,7 @@ def test_arms_go_round_who_is_hugged_or_blinded_from_behind() -> None:
 
 def test_who_reaches_down_leans_forward_and_who_reaches_up_does_not() -> None:
     touch = Touch(person="a", part="shoulder", hands="right")
-    assert lean(touch, lying(ORIGIN, 0.0)) > 0.9 > 0.2 > lean(touch, upright(ORIGIN, 0.0))
+    assert lean(touch, posed("lies", ORIGIN, 0.0)) > 0.9 > 0.2 > lean(touch, upright(ORIGIN, 0.0))
 
 
 def test_two_hands_are_apart_and_a_back_is_touched_from_behind() -> None:

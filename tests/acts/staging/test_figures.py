@@ -7,9 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from acts.shapes import Figure
-from acts.staging.figure_floor import _CLEARANCES
 from acts.staging.figures import _rested, figured, figures
-from acts.staging.poses import upright
+from acts.staging.poses import CLEARANCES, upright
 from acts.staging.recordings import has_takes
 from motion import SMPL22
 
@@ -26,7 +25,7 @@ def made(name: str, seconds: float = 6.0, **more: object) -> NDArray[np.floating
 
 def heights(poses: NDArray[np.floating]) -> NDArray[np.floating]:
     """(frames, 22) metres of the skin below each joint over the floor."""
-    found: NDArray[np.floating] = poses[..., 1] - _CLEARANCES
+    found: NDArray[np.floating] = poses[..., 1] - CLEARANCES
     return found
 
 

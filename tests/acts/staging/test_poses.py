@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acts.staging.poses import LOWER, bending, crouching, grounded, kneeling, lying, seated, stooping, upright
+from acts.staging.poses import FILE, LOWER, bending, posed, upright
 from motion import SMPL22
 from motion.kinematics import bone_lengths
 from motion.metrics.sentences.joints import Motion
@@ -21,33 +21,30 @@ def bent(place: np.ndarray, angle: float) -> np.ndarray:
     return bending(place, angle, 0.9)
 
 
-@pytest.mark.parametrize("make", [upright, seated, grounded, bent, stooping, crouching, kneeling, lying])
-def test_poses_are_of_this_body_and_on_the_floor(make) -> None:
-    pose = make(PLACE, 0.7)
+@pytest.mark.parametrize("pose", [bent(PLACE, 0.7), *(posed(name, PLACE, 0.7) for name in FILE["postures"])])
+def test_poses_are_of_this_body_and_on_the_floor(pose: np.ndarray) -> None:
     np.testing.assert_allclose(bone_lengths(pose), SMPL22.bone_lengths[1:], atol=1e-9)
     assert 0.0 <= pose[:, 1].min() < 0.1
     assert abs(float(heading(pose[None])[0]) - 0.7) < 0.05
 
 
 @pytest.mark.parametrize(
-    ("make", "rule"), [(upright, is_upright), (seated, sits), (kneeling, kneels), (lying, lies), (crouching, low)]
+    ("name", "rule"), [("stands", is_upright), ("sits", sits), ("kneels", kneels), ("lies", lies), ("crouches", low)]
 )
-def test_poses_are_what_they_are_called(make, rule) -> None:
+def test_poses_are_what_they_are_called(name, rule) -> None:
     duet = np.stack([np.tile(upright(PLACE, 0.0), (40, 1, 1)), np.tile(upright(PLACE + 1, 0.0), (40, 1, 1))])
-    duet[0, 20:] = make(PLACE, 0.0)  # a body's height is seen while it stands
+    duet[0, 20:] = posed(name, PLACE, 0.0)  # a body's height is seen while it stands
     assert rule(Motion(duet), 0)[25:].all()
 
 
 def test_feet_stay_where_they_stood() -> None:
-    feet = [
-        make(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] for make in (upright, seated, grounded, bent, stooping, crouching)
-    ]
+    stays = [name for name, angles in FILE["postures"].items() if "ahead" not in angles]
+    feet = [pose[TOES].mean(axis=0)[[0, 2]] for pose in (bent(PLACE, 0.7), *(posed(n, PLACE, 0.7) for n in stays))]
     assert np.ptp(feet, axis=0).max() < 1e-6
-    assert np.linalg.norm(lying(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] - feet[0]) < 0.35
 
 
 def test_who_sits_on_the_ground_is_at_its_level() -> None:
-    pose = grounded(PLACE, 0.7)
+    pose = posed("sits on the ground", PLACE, 0.7)
     assert pose[0, 1] < 0.25 < 0.6 < pose[SMPL22.index("head"), 1]
 
 
@@ -60,6 +57,6 @@ def test_who_bends_down_keeps_straight_legs_and_lowers_the_head_forward() -> Non
 
 
 def test_who_bends_down_has_the_hands_near_the_floor() -> None:
-    pose = stooping(PLACE, 0.7)
+    pose = posed("bends down", PLACE, 0.7)
     assert pose[[SMPL22.index(f"{side}_wrist") for side in ("left", "right")], 1].max() < 0.4
     assert 0.75 < pose[0, 1] < 0.9 and pose[SMPL22.index("head"), 1] > 0.6

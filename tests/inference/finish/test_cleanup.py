@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from acts.staging.poses import lying
+from acts.staging.poses import posed
 from motion import SMPL22
 from motion.kinematics import bone_lengths
 from motion.metrics.quality import standing_foot
@@ -67,7 +67,7 @@ def test_toes_that_swing_are_raised(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_bodies_are_kept_above_the_floor() -> None:
-    sunk = np.repeat(lying(np.zeros(2), 0.0)[None], 20, axis=0) - [0.0, 0.3, 0.0]
+    sunk = np.repeat(posed("lies", np.zeros(2), 0.0)[None], 20, axis=0) - [0.0, 0.3, 0.0]
     assert clean_person(sunk)[:, 0, 1].min() > 0.05
 
 
