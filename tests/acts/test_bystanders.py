@@ -16,7 +16,7 @@ from motion.transforms import facing
 
 RECORDED = Path(__file__).parents[1] / "data" / "bystanders" / "bystanders.npz"
 STANDS = {"stand-still", "freeze", "keep-distance", "face-other"}
-TALKS = {"talk", "argue", "nod", "bend-arm", "look-up", "lift-head"}
+TALKS = {"talk", "argue", "nod", "bend-arm", "look-up"}
 """What a person does who talks with hands and head."""
 WALKS = {"walk-up", "walk-away", "walk-past", "walk-ahead", "move-about", "step-forward", "part", "step-over"}
 WALKS |= {"cross-way", "return", "go-back", "exit", "enter", "back-turned", "copy", "mirror"}

@@ -465,7 +465,7 @@ def thrust(both: np.ndarray, metres: float, up: float = -0.1) -> None:
     ("name", "shown", "beyond", "before"),
     [
         ("jump", for_a_while(lambda both, up: np.add.at(both, (0, ..., 1), up), 6), 0.11, 0.09),
-        ("drop-head", tilted(1), 24, 20),
+        ("look-down", tilted(1), 24, 20),
         ("look-up", tilted(-1), 28, 24),
         ("punch", for_a_while(thrust, 4), 0.35, 0.31),
         ("jumping-jacks", for_a_while(jack), 0.04, 0.02),

@@ -36,7 +36,7 @@ def test_a_particle_that_a_frame_has_is_a_part_of_it(words: str) -> None:
 def test_what_an_act_waits_for_comes_after_what_is_told_before(words: str) -> None:
     order = {act.act: {relation.act for relation in act.order} for act in read(words).acts}
     ids = {act.act: act.id for act in read(words).acts}
-    assert not order["pat"] and order["turn-around"] == {ids["pat"]} and ids["turn-around"] in order["hide-and-seek"]
+    assert not order["pat"] and order["turn-around"] == {ids["pat"]} and ids["turn-around"] in order["crouch"]
 
 
 @pytest.mark.parametrize(

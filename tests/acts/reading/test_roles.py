@@ -36,7 +36,7 @@ def last(text: str) -> Act:
         ),
         ("A walks around the chair and taps B on the shoulder.", {"act": "pat", "agents": ("a",), "patient": "b"}),
         ("A drops the book and kicks B.", {"act": "kick", "agents": ("a",), "patient": "b"}),
-        ("The physio holds the ankle of the patient and bends the knee.", {"act": "move-other", "patient": "b"}),
+        ("The physio holds the ankle of the patient and bends the knee.", {"act": "touch", "patient": "b"}),
         ("She holds the ankle of the patient and raises a hand.", {"act": "raise-arm"}),
         ("B does push-ups beside him.", {"act": "push-ups", "times": None}),
         ("He does ten sit-ups.", {"act": "sit-ups", "times": 10}),
