@@ -81,14 +81,10 @@ class Turn(_Shape):
 
 
 class Stay(_Shape):
-    """Standing by: in place, facing the other, or with the back to them; ``frozen`` without any movement.
-
-    Where a story begins with it, the two are ``apart`` metres from each other; 0 leaves that free.
-    """
+    """Standing by: in place, with the back ``averted`` from the other, or ``frozen`` without any movement."""
 
     do: Literal["stay"] = "stay"
-    apart: Metres = 0.0
-    facing: Literal["", "other", "away"] = ""
+    averted: bool = False
     frozen: bool = False
 
 

@@ -205,8 +205,7 @@ class _Stage:
                 self.moves += [Move(who, way, turns=turns, late=late, rightwards=right) for who in people]
             case shapes.Stay():
                 self.frozen |= set(people) if shape.frozen else set()
-                self.apart = self.apart or shape.apart
-                self.moves += [Move(who, "averted") for who in people if shape.facing == "away"]
+                self.moves += [Move(who, "averted") for who in people if shape.averted]
             case shapes.Place():
                 self._place(act, shape)
             case shapes.Posture():
