@@ -301,7 +301,7 @@ def _is_said(token: Token, act: Act, entry: Entry, plan: Plan, parsed: Parse) ->
         others = any(kind_of(word) for word in said_words((shown,)) - forms)
         return "{thing}" in shown or bool(entry.thing and kind_of(act.thing) and not others)
     if (family := words.part(lemma)) and not (lemma in words.metres and act.distance is not None):
-        sided = act.side is not None and lemma in closed("limbs") and any(c.lower_ == act.side for c in token.children)
+        sided = act.side is not None and family in closed("limbs") and any(c.lower_ == act.side for c in token.children)
         handles = token.head.lower_ == "with" and any(isinstance(s, Touch | Gesture | Strike) for s in entry.stage)
         by_hand = handles and lemma == usual_limb(caption)  # "covers his eyes with his hands"
         return sided or by_hand or (act.part is not None and family == words.part(act.part))
@@ -381,7 +381,10 @@ def _is_place(token: Token) -> bool:
 
 def _is_target(token: Token) -> bool:
     """True for a preposition before the person to whom something is done: "on each other"."""
-    return token.lower_ in closed("targets") and any(_is_somebody(c) for c in token.children if c.dep_ == "pobj")
+    objects = [c for c in token.children if c.dep_ == "pobj"]
+    turns = (c for c in objects if vocabulary().directions.get(c.lower_) in closed("of the clock"))
+    objects += [c for turn in turns for c in turn.children]  # "around her clockwise"
+    return token.lower_ in closed("targets") and any(map(_is_somebody, objects))
 
 
 def _is_somebody(token: Token) -> bool:

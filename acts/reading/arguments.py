@@ -137,15 +137,17 @@ class Arguments:
 
     def _argument(self, token: Token, who: str, event: Event) -> Ref:
         self.seen.add(token.i)
-        within = next((c for c in token.children if c.dep_ == "compound" or c.lower_ == "other"), None)
         way = self._words.directions.get(token.lower_)
+        turns = way in closed("of the clock")
+        inner = ("compound", "poss") if turns else ("compound",)
+        within = next((c for c in token.children if c.dep_ in inner or c.lower_ == "other"), None)
         moved = within is not None and way is not None and self._words.part(within.lemma_.lower())
-        if within is not None and (moved or way in closed("of the clock")):
+        if within is not None and (moved or turns):
             event.words += [token.lower_] if moved else []
             self._direction(token.lower_, event)
             for often in (c for c in token.children if c.lemma_ == "time" or c.lower_ in closed("so often")):
                 self._modifier(often, event)
-            token = within  # "in a circle clockwise", "around the other clockwise", "waves the hand sideways"
+            token = within  # "in a circle clockwise", "around her clockwise", "waves the hand sideways"
         if (part := self._named_by(token)) is not None:
             token = part
         person = self._words.is_person(token.lemma_.lower())
