@@ -8,6 +8,7 @@ who touches is led to where they reach the other, and the hand is given.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 
@@ -48,8 +49,6 @@ _TRUNK = 0.47
 """Metres from the pelvis to the line of the shoulders."""
 _HIP = 0.93
 """Height in metres of the pelvis of a person who stands."""
-_KNEELS = float(posed("kneels", np.zeros(2), 0.0)[0, 1])
-"""The same of a person who kneels."""
 _DOWN = 0.33
 """Metres that the hand of a person who kneels is below their shoulder."""
 _FLAT = 0.3
@@ -73,6 +72,12 @@ _PUSHED = 0.3
 """Metres that somebody goes who is pushed, at least: the network would have both fall."""
 
 
+@cache
+def _kneeling() -> float:
+    """Height in metres of the pelvis of a person who kneels."""
+    return float(posed("kneels", np.zeros(2), 0.0)[0, 1])
+
+
 def kneels(touch: Touch, pose: Array) -> bool:
     """True for a place of a pose (22, 3) so low that the person who touches it kneels down to it."""
     return float(middle(touch, pose)[1]) < LOWEST and not touch.fells
@@ -81,7 +86,7 @@ def kneels(touch: Touch, pose: Array) -> bool:
 def beside(pose: Array, place: Array) -> float | None:
     """The heading across a person's lying body (22, 3), from the side of a place (2,); None if they do not lie."""
     body = np.asarray(pose)[JOINT["head"]] - pose[0]
-    if abs(body[1]) > _FLAT or pose[0][1] > _KNEELS:
+    if abs(body[1]) > _FLAT or pose[0][1] > _kneeling():
         return None
     across = np.array([body[2], -body[0]])
     side = 1.0 if across @ (np.asarray(pose)[0][[0, 2]] - place) >= 0 else -1.0
@@ -128,7 +133,7 @@ def _goes_round(touch: Touch) -> bool:
 def lean(touch: Touch, pose: Array) -> float:
     """Radians by which a person leans forward to touch the other, whose pose (22, 3) is given."""
     if kneels(touch, pose):
-        over = float(middle(touch, pose)[1]) + _DOWN - _KNEELS
+        over = float(middle(touch, pose)[1]) + _DOWN - _kneeling()
         return float(np.arccos(np.clip(over / _TRUNK, 0.2, 1.0)))
     least = 0.05 if touch.sides else 0.15
     return float(np.clip(0.1 + 1.2 * (1.3 - middle(touch, pose)[1]), least, 1.0))

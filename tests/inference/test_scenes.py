@@ -54,7 +54,7 @@ def test_a_window_that_another_follows_is_made_longer_and_cut(engine: Engine, mo
 
 
 def test_parts_that_did_not_change_are_not_made_again(engine: Engine, story: Result) -> None:
-    changed = SceneRequest(beats=(*BEATS[:2], Beat("They hug.", seconds=1.5)), **QUICK)
+    changed = SceneRequest(beats=(*BEATS[:2], Beat("They shake hands.", seconds=1.5)), **QUICK)
     steps = [e.step for e in engine.run(changed) if e.__class__.__name__ == "Progress" and e.stage == "sample"]
     assert min(steps) == 2 * QUICK["steps"] + 1
     again = run(engine, changed)
@@ -168,7 +168,7 @@ def test_a_result_says_what_share_of_it_the_plan_lays_out(engine: Engine) -> Non
         (readout,) = run(engine, SceneRequest(beats=beats, seed=3, **QUICK, **fields)).readouts
         return float(readout["planned"])
 
-    free, laid = (Beat(words, seconds=2.0) for words in ("They hug.", "They bow to each other."))
+    free, laid = (Beat(words, seconds=2.0) for words in ("They shake hands.", "They bow to each other."))
     assert share(free) == 0.0 == share(laid, planned=False), "the network is let alone"
     both = share(laid, free)
     assert 0.5 < share(laid) < 0.7, "a bow leaves the legs to the network"

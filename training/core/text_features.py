@@ -86,7 +86,7 @@ def encoded(captions: Sequence[str]) -> Iterator[tuple[list[int], TokenFeatures]
         places = order[start : start + 128]
         with mixed_precision("cpu"):
             features = encoder([captions[place] for place in places])
-        yield places, features
+        yield places, TokenFeatures(features.features.float(), features.mask)
 
 
 def _kept(captions: Sequence[str]) -> dict[str, Tensor]:
