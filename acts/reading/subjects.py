@@ -253,7 +253,7 @@ class Subjects:
         before = token.nbor(-1) if token.i > 1 else token
         which = before.nbor(-1) if before.lower_ == "one" and before.i > 0 else before  # "the other one counts"
         # "the other ducks" may be birds to the parser
-        if which.lower_ in closed("ordinals") and which.nbor(-1).lower_ == "the" and is_finite(token):
+        if which.i and which.lower_ in closed("ordinals") and which.nbor(-1).lower_ == "the" and is_finite(token):
             self._cast.seen[before.i] = other = reference(which, self._cast, "")
             return other
         helper = self._found.get(head.i) if head is not None and token.dep_ in ("ccomp", "xcomp") else None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from acts import Plan, read
@@ -69,6 +69,7 @@ _WORDS = (
 )
 
 
+@example("other one gives")
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.sampled_from(_WORDS.split()), max_size=40).map(" ".join) | st.text(max_size=200))
 def test_any_text_gives_a_plan(text: str) -> None:

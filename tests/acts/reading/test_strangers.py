@@ -108,6 +108,7 @@ from tests.acts.reading.reading import told
         ("She jumps on his back and he carries her.", [("ride-back", "a", "b"), ("carry-back", "b", "a")]),
         ("They circle each other, three metres apart.", [("circle-together", "ab", None)]),
         ("They bow to the audience.", [("bow", "ab", None), ("form-line", "ab", None)]),
+        ("An actor takes a bow and the audience claps.", [("bow", "a", None), ("clap", "b", "a")]),
         ("A man walks with arms outstretched as if on a rope.", [("walk-ahead", "a", None), ("extend-arm", "a", None)]),
         (
             "a person moves his hand in a circular motion and lets it fall",
