@@ -57,6 +57,8 @@ SHORTEST = 20
 """Frames for which a figure is begun, at least."""
 _SEEN = 6
 """Frames between two poses of a figure that are looked at for the room that it needs."""
+_DEEP = 0.08
+"""Metres by which the pelvis of somebody who is down may rise as a figure begins."""
 _HOLDS, _WAITS = 0.5, {"in": 0.2}
 """Seconds for which a limb is held, over and over, and the row of what comes before it and after it."""
 LIMBS = frozenset(FILE["limbs"])
@@ -175,7 +177,7 @@ def _mirrored(rows: Array) -> Array:
 
 
 def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Array | None, seed: int) -> list[Part]:
-    """The body of a person who does a figure, as far as it falls into a window; one who is down gets up before.
+    """The body of a person who does a figure, as far as it falls into a window; who is on the ground gets up before.
 
     Args:
         scores: of all beats.
@@ -193,9 +195,12 @@ def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Arra
             parts.append(beat.known(person, np.asarray(rises) - beat.start, known, joints))
     who, score = "ab"[person], scores[beat.window.beat]
     frames, poses = _figure(score, person, beat, first, seed)
+    high = poses[:, 0, 1]
+    if last is not None and DOWN < last[0, 1] <= UPRIGHT and len(poses) and high.min() <= UPRIGHT:
+        begins = int(np.argmax(high <= max(float(last[0, 1]), high.min()) + _DEEP))  # they do not get up before it
+        frames, poses = _figure(score, person, beat, 2 * first - int(frames[begins]), seed)
+        frames, poses = frames[frames >= first], poses[frames >= first]
     shown = np.isin(frames, beat.shown(frames))
-    if last is not None and last[0, 1] <= UPRIGHT and len(poses) and poses[:, 0, 1].min() <= UPRIGHT:
-        shown &= poses[:, 0, 1] <= UPRIGHT  # who is down already does not get up before it
     listed, at, poses = score.bodily(who), frames[shown], poses[shown]
     figure, taken = listed[0], has_takes(listed[0].figure)
     moved = set(_OF_HEAD) if taken else _moved(listed)

@@ -80,6 +80,12 @@ def test_a_person_who_lies_gets_up_before_a_cartwheel(engine: Engine) -> None:
     assert speed.max() < 9.0
 
 
+def test_who_kneels_ties_a_shoe_without_getting_up_before(engine: Engine) -> None:
+    beats = (Beat("Person A kneels down.", seconds=4.0), Beat("Person A ties a shoe.", seconds=5.0))
+    pelvis = positions(run(engine, SceneRequest(beats=beats, **QUICK)))[0, :, 0, 1]
+    assert pelvis[70:210].max() < 0.85
+
+
 def test_who_sneaks_away_walks_on_tiptoe_and_whoever_touches_then_walks_as_ever(engine: Engine) -> None:
     found = made(engine, "Person A sneaks away.", seconds=4.0)[0]
     ankles = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
