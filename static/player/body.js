@@ -83,7 +83,7 @@ export class Figure {
       });
     });
     const { bones, weights } = body;
-    const { vertices: rest, normals: straight } = this.bound ?? body;
+    const { vertices: rest, normals: straight } = this.bound;
     const m = new Float32Array(12);
     for (let v = 0, i = 0; i < rest.length; v += 4, i += 3) {
       const first = 12 * bones[v];

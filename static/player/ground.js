@@ -12,7 +12,7 @@ const SIZE = 192; // pixels of the shadow's picture, each way
 const LEAST_SPAN = 5; // metres across it
 const BELOW = 0.004; // metres by which the floor lies under the lines drawn on it
 const SAMPLES = 3; // a bone
-const HIGHEST = 1.8; // metres over the floor from which nothing is shaded
+export const HIGHEST = 1.8; // metres over the floor from which nothing is shaded
 const GAUSS = Float32Array.from({ length: 257 }, (_, i) => Math.exp(-4.5 * (i / 256))); // of d²/(3σ)², 0..1
 
 /** Triangles of the ground about a point: positions, colours (4 a corner) and texture places (2 a corner). */

@@ -10,10 +10,7 @@ export function attach(surface, orbit, { changed, mayScroll }) {
   const pointers = new Map();
   let pinch = null;
 
-  const local = (event) => {
-    const box = surface.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
-  };
+  const at = ({ clientX, clientY }) => [clientX, clientY];
   const spread = () => {
     const [a, b] = [...pointers.values()];
     return { distance: Math.hypot(a[0] - b[0], a[1] - b[1]), x: (a[0] + b[0]) / 2, y: (a[1] + b[1]) / 2 };
@@ -21,12 +18,12 @@ export function attach(surface, orbit, { changed, mayScroll }) {
 
   surface.addEventListener("pointerdown", (event) => {
     surface.setPointerCapture(event.pointerId);
-    pointers.set(event.pointerId, local(event));
+    pointers.set(event.pointerId, at(event));
     pinch = pointers.size === 2 ? spread() : null;
   });
 
   surface.addEventListener("pointermove", (event) => {
-    const now = local(event);
+    const now = at(event);
     const before = pointers.get(event.pointerId);
     if (!before) return;
     pointers.set(event.pointerId, now);

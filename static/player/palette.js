@@ -23,7 +23,7 @@ const greyer = (zones) => each(zones, (color) => {
 function theme({ shade, lamps, bodies, people, given, curve, ...plain }) {
   const worn = bodies.map((zones) => each(zones, hex));
   return {
-    ...each(plain, hex), shade, lamps, curve, reach: REACH,
+    ...each(plain, hex), shade, lamps, curve,
     bodies: worn, givenBodies: worn.map(greyer),
     people: people.map(limbs), given: given.map(limbs),
   };
@@ -32,7 +32,7 @@ function theme({ shade, lamps, bodies, people, given, curve, ...plain }) {
 export const THEMES = each(COLOURS, theme);
 
 /** The floor at a distance in metres from the camera's target: it grows dimmer towards the horizon. */
-export const floorAt = (theme, metres) => mix(theme.floor, theme.far, smooth(Math.min(metres / theme.reach, 1)));
+export const floorAt = (theme, metres) => mix(theme.floor, theme.far, smooth(Math.min(metres / REACH, 1)));
 
 /** The sky at an angle in radians above the horizon. */
 export const skyAt = (theme, angle) => mix(theme.horizon, theme.sky, smooth(Math.min(angle / 0.55, 1)));

@@ -48,7 +48,6 @@ export class Player {
     this.listen();
     this.wake();
     this.clothes.change();
-    return this;
   }
 
   get theme() {

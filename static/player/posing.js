@@ -28,8 +28,7 @@ export class Posing {
     this.opener = player.root.contains(document.activeElement) ? document.activeElement : player.root;
     this.listen();
     this.lay();
-    const { spots } = player.pane;
-    if (spots) this.place(spots);
+    this.place(player.pane.spots);
     this.focus(this.handles.find((handle) => handle.style.visibility !== "hidden"));
   }
 

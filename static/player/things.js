@@ -2,11 +2,11 @@
 
 import { fromBase64 } from "./base64.js";
 import { Figure, normalsOf } from "./body.js";
+import { HIGHEST } from "./ground.js";
 import { hex } from "./palette.js";
 
 const SHADE = 0.3; // darkness of the shadow for each square metre of surface, as in webdemo/view/theme.py
 const AT = 1.5; // metres from a window or the like within which somebody is at it, as in webdemo/view/camera.py
-const HIGHEST = 1.8; // metres over the floor from which nothing is shaded
 
 /** A thing of a payload, as typed arrays in world axes. */
 export function decodeThing(stored) {
@@ -14,7 +14,7 @@ export function decodeThing(stored) {
   const faces = new Uint16Array(fromBase64(stored.faces).buffer);
   const zones = stored.palette;
   return {
-    kind: stored.kind, name: stored.name, frames: stored.frames, stands: stored.stands,
+    kind: stored.kind, frames: stored.frames, stands: stored.stands,
     vertices, faces, zones,
     normals: normalsOf(vertices, faces),
     faceZones: fromBase64(stored.face_colours),

@@ -8,7 +8,7 @@ from acts import lexicon, read
 from acts.accounting import account
 from acts.checking import checked
 from acts.qualifiers import plain, qualifiers
-from tests.motion.metrics.test_sentence_shapes import duet, put
+from tests.motion.metrics.figures import duet, put
 from webdemo.inference.verdicts import note
 
 

@@ -14,7 +14,7 @@ from motion import Duet
 from motion.metrics.sentences.joints import Motion
 from motion.skeleton import SBU15
 from motion.transforms import heading_matrix
-from tests.motion.metrics.test_sentence_shapes import duet, each, index, put, shift, spin, tilt
+from tests.motion.metrics.figures import duet, each, index, put, shift, spin, tilt
 
 
 def plan(*acts: Act) -> Plan:

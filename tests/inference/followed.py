@@ -43,7 +43,7 @@ class Follower:
         """A scene's result; ``settings`` are those of its windows."""
         self.settings = []
         pipeline: Any = SimpleNamespace(sample=self.sample, digest=self.digest)
-        *_, result = SceneMaker(pipeline, lambda *_: None).run(request, CancelToken(), StageTimer.start())
+        *_, result = SceneMaker(pipeline, lambda *_: None).run(request, CancelToken(), StageTimer())
         assert isinstance(result, Result)
         return result
 

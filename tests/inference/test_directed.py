@@ -30,7 +30,7 @@ def make(engine: Engine, parts: Sequence[Part], **changes: float) -> Duet:
     pipeline = engine.pipeline("intergen")
     request = GenerateRequest(prompt="They walk away from each other.", seconds=FRAMES / 30, steps=4, **changes)
     scene = directed(pipeline.model, FRAMES, parts)
-    *_, result = pipeline.run(request, CancelToken(), StageTimer.start(), scene=scene)
+    *_, result = pipeline.run(request, CancelToken(), StageTimer(), scene=scene)
     return result.duets[0]
 
 

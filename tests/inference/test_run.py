@@ -12,7 +12,7 @@ from webdemo.inference.run import Cancelled, CancelToken, StageTimer
 def test_laps_of_a_stage_add_up(monkeypatch: pytest.MonkeyPatch) -> None:
     times = iter([10.0, 11.0, 11.5, 13.5, 14.0])
     monkeypatch.setattr(run, "time", type("Clock", (), {"perf_counter": staticmethod(lambda: next(times))}))
-    clock = StageTimer.start()
+    clock = StageTimer()
     for stage in ("text", "sample", "sample"):
         clock.lap(stage)
     assert clock.stages == {"text": 1.0, "sample": 2.5}
@@ -26,7 +26,7 @@ def test_another_thread_cancels() -> None:
     other = threading.Thread(target=token.cancel)
     other.start()
     other.join()
-    assert token.cancelled and token.is_set()
+    assert token.cancelled
     with pytest.raises(Cancelled):
         token.raise_if_cancelled()
 
@@ -44,4 +44,4 @@ def test_a_run_ends_when_its_time_is_over(monkeypatch: pytest.MonkeyPatch, secon
     now += 0.1
     with pytest.raises(InputError, match=f"longer than the {said} that this lab allows"):
         token.raise_if_cancelled()
-    assert token.is_set() and not token.cancelled
+    assert not token.cancelled

@@ -11,7 +11,7 @@ import pytest
 
 from acts import Act, Plan, Relation
 from motion import Duet, InputError
-from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
+from tests.motion.metrics.figures import duet, put, shift, spin
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
 from webdemo.inference.requests.sampling import MAX_SEED
 from webdemo.inference.story import Beat

@@ -3,24 +3,15 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
+from tests.static.node import newest_node
+
 ROOT = Path(__file__).resolve().parents[2]
 FILES = sorted(Path(__file__).parent.rglob("*.test.mjs"))
-
-
-def newest_node() -> str:
-    """The path of Node, which has a test runner from version 18 on; without it the test is skipped."""
-    if (node := shutil.which("node")) is None:
-        pytest.skip("Node 18 or newer is not installed: the JavaScript modules are tested in pages alone")
-    said = subprocess.run([node, "--version"], capture_output=True, text=True).stdout
-    if int(said.strip().lstrip("v").split(".")[0]) < 18:
-        pytest.skip(f"Node {said.strip()} has no test runner: install Node 18 or newer")
-    return node
 
 
 def test_there_is_something_to_test() -> None:

@@ -148,7 +148,7 @@ class StubEngine:
             return
         if isinstance(request, LiveTake):
             manifest = {"model": "stub", "request": request.to_dict()}
-            for event in request.results(StageTimer.start()):
+            for event in request.results(StageTimer()):
                 yield replace(event, manifest=manifest) if isinstance(event, Result) else event
             return
         if "impossible" in request.prompt:

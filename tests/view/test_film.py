@@ -15,7 +15,7 @@ from motion import Duet, InputError
 from motion.skeleton import SMPL22
 from motion.transforms import turn
 from tests.motion.bodies import marching
-from tests.static.test_node import newest_node
+from tests.static.node import newest_node
 from webdemo.view import film
 from webdemo.view.camera import VIEWS, Camera, cameras, sampled
 from webdemo.view.sheet import write_sheet

@@ -61,16 +61,16 @@ def test_one_person_has_no_curves():
 
 
 def test_curves_measure_metres():
-    curves = {c.key: c.values for c in distance_curves(duet(apart=2.0))}
-    assert np.allclose(curves["pelvis_distance"], 2.0)
-    assert np.allclose(curves["hand_distance"], 2.0, atol=1e-3)
+    curves = {c.label: c.values for c in distance_curves(duet(apart=2.0))}
+    assert np.allclose(curves["Apart"], 2.0)
+    assert np.allclose(curves["Hands"], 2.0, atol=1e-3)
 
 
 def test_own_curves_and_contacts_are_kept():
     sample = sample_payload(
-        duet(4), curves=[Curve("k", "Label", "s", np.arange(4.0))], contacts=[Contact(1, 3, "hands", "x")]
+        duet(4), curves=[Curve("Label", "s", np.arange(4.0))], contacts=[Contact(1, 3, "hands", "x")]
     )
-    assert sample["curves"] == [{"key": "k", "label": "Label", "unit": "s", "values": [0.0, 1.0, 2.0, 3.0]}]
+    assert sample["curves"] == [{"label": "Label", "unit": "s", "values": [0.0, 1.0, 2.0, 3.0]}]
     assert sample["contacts"] == [{"start": 1, "stop": 3, "kind": "hands", "label": "x"}]
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -105,8 +104,7 @@ def markdown(results: dict[str, Scores]) -> str:
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Score the page's predictions on the corpus' test split.")
-    parser.add_argument("--data", type=Path, required=True, help="folder of the corpus")
-    add_options(parser, "weights", "table")
+    add_options(parser, "corpus", "weights", "table")
     parser.add_argument("--model", action="append", help="name of a model; motion-mlp by default")
     parser.add_argument("--windows", type=int, default=200, help="how many are drawn")
     options = parser.parse_args(argv)

@@ -37,7 +37,7 @@ class Windows:
     """
 
     def __init__(self, folder: Path, past: int = 30, future: int = 30, *, split: str = "train") -> None:
-        self.past, self.future, self.length = past, future, past + future
+        self.past, self.length = past, past + future
         self.motions, rows = load_corpus(folder)
         kept = [row for row in rows if row["split"] == split and row["frames"] >= self.length]
         if not kept:

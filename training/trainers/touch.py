@@ -65,7 +65,7 @@ def conditions(conditioner: TextConditioner, captions: list[str]) -> Tensor:
     vectors = torch.empty(len(captions), conditioner.config.latent_dim)
     for places, tokens in encoded(captions):
         with mixed_precision("cpu"):
-            vectors[places] = conditioner(tokens.features.float(), tokens.mask).float()
+            vectors[places] = conditioner(tokens.features, tokens.mask).float()
     return vectors
 
 

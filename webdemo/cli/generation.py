@@ -14,7 +14,7 @@ from webdemo.inference.methods import AUTOMATIC, automatic, by_class
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
-from webdemo.inference.run import Progress, Result
+from webdemo.inference.run import Result
 from webdemo.inference.story.request import SceneRequest
 
 from .parser import add_reading, add_sampling, names_of, reading_choices, sampling_fields, with_notes
@@ -183,7 +183,7 @@ def run(request: GenerateRequest | ReactRequest | PredictRequest | SceneRequest)
             if show:
                 print("\r\033[K", end="", file=sys.stderr)
             return event
-        if show and isinstance(event, Progress):
+        if show:
             number = f"try {event.attempt}/{event.attempts}: " if event.attempts > 1 else ""
             line = f"{number}{event.stage} {event.step}/{event.total}"
             print(f"\r\033[K{line}", end="", file=sys.stderr, flush=True)

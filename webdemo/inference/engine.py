@@ -86,7 +86,7 @@ class Engine:
             Cancelled: within one sampling step of ``cancel.cancel()``.
         """
         cancel = cancel or CancelToken()
-        timer = StageTimer.start()
+        timer = StageTimer()
         yield timer.progress("load")
         pipeline = self.pipeline(request.model)
         _take_threads(pipeline)

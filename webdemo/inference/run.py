@@ -103,10 +103,6 @@ class CancelToken:
         """True if the owner asked the run to stop."""
         return self._event.is_set()
 
-    def is_set(self) -> bool:
-        """True if the run shall stop: it was asked to, or its time is over."""
-        return self.cancelled or self._late_now()
-
     def raise_if_cancelled(self) -> None:
         """Ends a run that shall stop.
 
@@ -116,11 +112,8 @@ class CancelToken:
         """
         if self.cancelled:
             raise Cancelled("The run was cancelled.")
-        if self._late_now():
+        if self._until is not None and monotonic() > self._until:
             raise InputError(self._late.format(limit=_in_words(self._seconds)))
-
-    def _late_now(self) -> bool:
-        return self._until is not None and monotonic() > self._until
 
 
 def _in_words(seconds: float) -> str:
@@ -128,30 +121,21 @@ def _in_words(seconds: float) -> str:
     return f"{minutes:g} minutes" if minutes > 1 and minutes.is_integer() else f"{seconds:g} seconds"
 
 
-@dataclass
 class StageTimer:
     """Seconds since a run began, and by stage.
 
     Attributes:
-        began: ``time.perf_counter()`` at the start.
         stages: stage → seconds.
     """
 
-    began: float
-    stages: dict[str, float]
-
-    def __post_init__(self) -> None:
-        self._lapped = self.began
-
-    @classmethod
-    def start(cls) -> StageTimer:
-        """A timer that begins now."""
-        return cls(time.perf_counter(), {})
+    def __init__(self) -> None:
+        self._began = self._lapped = time.perf_counter()
+        self.stages: dict[str, float] = {}
 
     @property
     def elapsed(self) -> float:
         """Seconds since the run began."""
-        return time.perf_counter() - self.began
+        return time.perf_counter() - self._began
 
     def progress(self, stage: str, step: int = 0, total: int = 1, unit: str = "step") -> Progress:
         """A progress event with the time so far."""

@@ -16,10 +16,9 @@ from jinja2 import Environment, FileSystemLoader
 
 from webdemo.inference.methods import label_of
 from webdemo.ui.components.notebook import made_by
-from webdemo.ui.components.part import STATIC
 from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.history import Entry
-from webdemo.ui.text.texts import TEXTS, TEXTS_JS, say
+from webdemo.ui.text.texts import STATIC, TEXTS, TEXTS_JS, say
 from webdemo.ui.text.words import day
 from webdemo.ui.theme import COLOURS
 from webdemo.view.payload import Payload

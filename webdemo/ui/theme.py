@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import gradio as gr
 
-_STATIC = Path(__file__).resolve().parents[2] / "static"
-COLOURS = _STATIC / "colours.css"
-STYLE = _STATIC / "ui.css"
+from webdemo.ui.text.texts import STATIC
+
+COLOURS = STATIC / "colours.css"
+STYLE = STATIC / "ui.css"
 """The page's own style sheet, beside what the theme sets and the colours, with which the document begins."""
 
 _SANS = ("system-ui", "-apple-system", "Segoe UI", "Roboto", "Noto Sans", "Helvetica Neue", "Arial", "sans-serif")
@@ -48,7 +47,7 @@ _VALUES = {
 }
 """Gradio's variables as this page sets them."""
 
-HEAD = f"<script>{(_STATIC / 'ui.js').read_text(encoding='utf-8')}</script>"
+HEAD = f"<script>{(STATIC / 'ui.js').read_text(encoding='utf-8')}</script>"
 """The page's own script: a key that starts a run, and menus that close by themselves."""
 
 

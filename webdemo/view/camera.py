@@ -17,7 +17,16 @@ from motion.things import FIXTURES
 from motion.transforms import heading
 from motion.vectors import Array, heading_of
 
-VIEWS = ("threequarter", "front", "side", "top", "a", "b")
+_PRESETS = {
+    "threequarter": (-1.05, 0.24),
+    "front": (0.0, 0.16),
+    "side": (-np.pi / 2, 0.1),
+    "top": (-np.pi / 2, 1.48),
+    "a": (np.pi + 0.4, 0.3),
+    "b": (-0.4, 0.3),
+}
+"""Radians from the line between the two, and of elevation, as in ``views.js``."""
+VIEWS = tuple(_PRESETS)
 FIELD_OF_VIEW = np.pi / 4
 """From the lower edge of the picture to the upper one."""
 _AROUND = 0.13
@@ -115,8 +124,9 @@ def cameras(
     """
     if view not in VIEWS:
         raise InputError(f"There is no view {view!r:.30}: choose one of {', '.join(VIEWS)}.")
-    found_yaw, found_elevation = _preset(view, _heading(panes[0]))
-    yaw, elevation = found_yaw if yaw is None else yaw, found_elevation if elevation is None else elevation
+    aside, usual = _PRESETS[view]
+    yaw = _heading(panes[0]) + aside if yaw is None else yaw
+    elevation = usual if elevation is None else elevation
     axes = Camera(np.zeros(3), yaw, elevation, 1.0, size).axes * [[1.0], [1.0], [-1.0]]
     half = np.array([size[0] / size[1], size[0] / size[1], 1.0, 1.0])
     slopes = np.tan(FIELD_OF_VIEW / 2) * np.maximum(half - 2 * np.array(_INSETS), 0.1)
@@ -195,15 +205,3 @@ def _heading(motion: Clip | Duet) -> float:
     if np.hypot(way[0], way[2]) > 0.05:
         return float(heading_of(way))
     return float(heading(people[0]))
-
-
-def _preset(name: str, along: float) -> tuple[float, float]:
-    """Yaw and elevation, as ``preset`` in views.js."""
-    return {
-        "front": (along, 0.16),
-        "side": (along - np.pi / 2, 0.1),
-        "top": (along - np.pi / 2, 1.48),
-        "a": (along + np.pi + 0.4, 0.3),
-        "b": (along - 0.4, 0.3),
-        "threequarter": (along - 1.05, 0.24),
-    }[name]

@@ -26,7 +26,6 @@ from .things import thing_payload
 
 Payload = dict[str, Any]
 
-FORMAT = 1
 _LEVELS = 2**16 - 1
 
 
@@ -86,9 +85,7 @@ def sample_payload(
         "fps": float(motion.fps),
         "frames": motion.num_frames,
         "positions": pack_positions(stacked_positions(motion)),
-        "curves": [
-            {"key": c.key, "label": c.label, "unit": c.unit, "values": np.round(c.values, 4).tolist()} for c in curves
-        ],
+        "curves": [{"label": c.label, "unit": c.unit, "values": np.round(c.values, 4).tolist()} for c in curves],
         "contacts": [contact.to_dict() for contact in contacts],
         "ghost": None if ghost is None else pack_positions(stacked_positions(ghost)),
         "past_until": past_until,
@@ -124,7 +121,6 @@ def build_payload(samples: Sequence[dict[str, Any]], *, skeleton: Any, title: st
         changes it.
     """
     payload: Payload = {
-        "format": FORMAT,
         "title": title,
         "joint_names": list(skeleton.joint_names),
         "parents": list(skeleton.parents),
@@ -170,13 +166,11 @@ class Curve:
     """One value a frame.
 
     Attributes:
-        key: what a program calls it.
         label: what the page calls it.
         unit: behind the value, such as ``"m"``.
         values: (T,).
     """
 
-    key: str
     label: str
     unit: str
     values: Array
@@ -184,7 +178,4 @@ class Curve:
 
 def distance_curves(duet: Duet) -> list[Curve]:
     """Distance in metres between the two roots over the floor plan, and between the nearest two hands."""
-    return [
-        Curve("pelvis_distance", "Apart", "m", pelvis_distance(duet)),
-        Curve("hand_distance", "Hands", "m", hand_distance(duet)),
-    ]
+    return [Curve("Apart", "m", pelvis_distance(duet)), Curve("Hands", "m", hand_distance(duet))]

@@ -65,7 +65,6 @@ def thing_payload(thing: Thing) -> dict[str, Any]:
     turns = quaternions(thing.rotations[:frames].astype(np.float64))
     return {
         "kind": thing.kind,
-        "name": thing.name,
         "stands": thing.kind in FIXTURES,
         "frames": frames,
         "vertices": in_base64(mesh.vertices, "<f4"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 import torch
 from scipy.spatial.transform import Rotation
@@ -17,10 +16,7 @@ from models.mawgan.losses import (
     reconstruction_loss,
     skeleton_loss,
 )
-
-
-def poses(seed: int, *size: int) -> torch.Tensor:
-    return torch.from_numpy(np.random.default_rng(seed).normal(size=size)).float()
+from tests.models.mawgan.poses import poses
 
 
 def test_gram_distance_knows_no_rotation() -> None:

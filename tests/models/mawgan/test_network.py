@@ -11,7 +11,7 @@ from torch import nn
 from models.mawgan.losses import MAWGANLossWeights
 from models.mawgan.network import Critic, MAWGANConfig, PredictiveMAWGAN, to_curves
 from models.mawgan.srvf import exp_map, inner, log_map, norm, to_srvf
-from tests.models.mawgan.test_losses import poses
+from tests.models.mawgan.poses import poses
 
 SMALL = MAWGANConfig(joints=5, past=8, future=12, fc=64, channels=(16, 8, 8, 4), critic=(4, 4, 4), critic_fc=8)
 

@@ -21,9 +21,7 @@ from tests.motion.formats.arrays import npy, npz
 
 from .characters import glb_motion, glb_takes
 from .rigs import RIGS, bvh_text
-from .test_kinect import sbu_text, skeleton_text
-from .test_markers import c3d_bytes, keypoints, trc_text
-from .test_smpl import interhuman, interx, zipped
+from .written import c3d_bytes, interhuman, interx, keypoints, sbu_text, skeleton_text, trc_text, zipped
 
 SECONDS = 2.0
 """The most that a file of these sizes may keep the processor."""

@@ -7,22 +7,7 @@ from motion import SKELETONS, Duet, InputError
 from motion.formats import read
 from tests.motion.bodies import as_stored
 
-
-def skeleton_text(people: np.ndarray, missing: dict[int, set[int]] | None = None) -> str:
-    """(P, T, 25, 3) as NTU RGB+D writes it; ``missing``: the frames that lack a person."""
-    lines = [str(people.shape[1])]
-    for frame in range(people.shape[1]):
-        here = [p for p in range(len(people)) if frame not in (missing or {}).get(p, ())]
-        lines.append(str(len(here)))
-        for person in here:
-            lines += [f"7205759403792{person} 0 1 1 1 1 0 0.02 -0.2 2", "25"]
-            lines += [" ".join(map(str, xyz)) + " 0 0 0 0 0 0 0 0 2" for xyz in people[person, frame]]
-    return "\n".join(lines)
-
-
-def sbu_text(raw: np.ndarray) -> str:
-    """(T, 90) numbers between 0 and 1 as SBU writes them."""
-    return "\n".join(f"{i + 1}," + ",".join(f"{v:.6f}" for v in row) for i, row in enumerate(raw))
+from .written import sbu_text, skeleton_text
 
 
 @pytest.fixture

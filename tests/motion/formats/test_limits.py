@@ -21,7 +21,7 @@ from tests.motion.bodies import marching
 
 from .arrays import npy, npz
 from .characters import packed
-from .test_markers import c3d_bytes, keypoints, trc_text
+from .written import c3d_bytes, keypoints, trc_text
 
 MEGABYTE = 2**20
 FULL = MAX_BYTES - 1000

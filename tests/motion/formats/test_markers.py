@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import struct
-from collections.abc import Mapping
 
 import numpy as np
 import pytest
@@ -14,57 +12,9 @@ from motion.formats.markers import people_of
 from motion.skeleton import POINTS17
 from tests.motion.bodies import as_stored, marching
 
-c3d = pytest.importorskip("c3d")
+from .written import JOINT, c3d_bytes, keypoints, trc_text
 
 POSITIONS, _ = marching(24)
-JOINT = {name: POSITIONS[:, index] for index, name in enumerate(SMPL22.joint_names)}
-TO_Z_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
-
-
-def keypoints() -> dict[str, np.ndarray]:
-    """Pose2Sim's names of a body's joints, (T, 3) metres, Y up."""
-    names = {"foot": "BigToe"}
-    sided = {
-        f"{side[0].upper()}{names.get(part, part.title())}": JOINT[f"{side}_{part}"]
-        for side in ("left", "right")
-        for part in ("hip", "knee", "ankle", "foot", "shoulder", "elbow", "wrist")
-    }
-    return {**sided, "Neck": JOINT["neck"], "Head": JOINT["head"]}
-
-
-def trc_text(points: Mapping[str, np.ndarray], *, rate: object = 30, unit: str = "m", scale: float = 1.0) -> str:
-    """A .trc file as OpenSim writes it."""
-    names, frames = list(points), len(next(iter(points.values())))
-    head = [
-        "PathFileType\t4\t(X/Y/Z)\ttest.trc",
-        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
-        f"{rate}\t{rate}\t{frames}\t{len(names)}\t{unit}\t{rate}\t1\t{frames}",
-        "Frame#\tTime\t" + "\t\t\t".join(names) + "\t\t",
-        "\t\t" + "\t".join(f"X{n}\tY{n}\tZ{n}" for n in range(1, len(names) + 1)),
-    ]
-    for frame in range(frames):
-        values = [value * scale for name in names for value in points[name][frame]]
-        cells = ["" if np.isnan(value) else f"{value:.5f}" for value in values]
-        head.append("\t".join([str(frame + 1), f"{frame / 30:.4f}", *cells]))
-    return "\n".join(head) + "\n"
-
-
-def c3d_bytes(points: Mapping[str, np.ndarray], *, scale: float = -1.0) -> bytes:
-    """A .c3d file of points (T, 3) in metres, in millimetres and Z up, as laboratories record.
-
-    The numbers are floats, or whole ones of a ``scale`` above 0.
-    """
-    writer = c3d.Writer(point_rate=100.0, point_scale=scale)
-    writer.set_point_labels(list(points))
-    stacked = np.stack(list(points.values()), axis=1) @ TO_Z_UP.T * 1000.0
-    for frame in stacked:
-        row = np.zeros((len(points), 5), dtype=np.float32)
-        row[:, :3] = np.nan_to_num(frame)
-        row[:, 3] = np.where(np.isnan(frame).any(-1), -1.0, 0.0)
-        writer.add_frames([(row, np.zeros((0, 0)))])
-    buffer = io.BytesIO()
-    writer.write(buffer)
-    return buffer.getvalue()
 
 
 def error_of(found: Clip) -> float:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -15,49 +13,15 @@ from motion.formats.importing import import_motion
 from motion.formats.registry import partner_file
 from motion.formats.smpl import PELVIS
 from motion.guesses import turn_of
-from motion.kinematics import fit_rotations
 from motion.transforms import heading_matrix
 from tests.motion.bodies import marching
 from tests.motion.formats.arrays import npy, npz
 
+from .written import interhuman, interx, zipped
+
 POSITIONS, ROTATIONS = marching(20)
 APART = POSITIONS + np.array([0.4, 0.0, 1.2])
 DUET = Duet.from_positions(np.stack([POSITIONS, APART]), fps=30)
-TO_Z_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
-
-
-def interx(positions: np.ndarray, *, z_up: bool = True, flat: bool = True) -> dict[str, np.ndarray]:
-    """Inter-X' arrays of a motion on SMPL22's bones."""
-    turn = TO_Z_UP if z_up else np.eye(3)
-    rotations = fit_rotations(positions)
-    rotations[:, 0] = turn @ rotations[:, 0]
-    vectors = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec().reshape(-1, 22, 3)
-    body = vectors[:, 1:].reshape(len(positions), 63) if flat else vectors[:, 1:]
-    return {
-        "root_orient": vectors[:, 0],
-        "pose_body": body,
-        "trans": positions[:, 0] @ turn.T - PELVIS,
-        "pose_lhand": np.zeros((len(positions), 45)),
-        "betas": np.ones((1, 10)),
-        "gender": np.array("male"),
-    }
-
-
-def interhuman(positions: np.ndarray) -> np.ndarray:
-    """(T, 492) of InterHuman: 62 joints, Z up, then 51 rotations."""
-    frames = np.random.default_rng(0).normal(size=(len(positions), 492)).astype(np.float32)
-    frames[:, :66] = (positions @ TO_Z_UP.T).reshape(-1, 66)
-    return frames
-
-
-def zipped(parts: dict[str, bytes]) -> bytes:
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in parts.items():
-            archive.writestr(name, data)
-    return buffer.getvalue()
-
-
 # ---- Inter-X and InterHuman --------------------------------------------------------------------------
 
 

@@ -126,7 +126,7 @@ def test_a_stream_answers_each_frame_once() -> None:
     one = stream()
     first = answered(one, poses([0.0, 1 / 30], 0.5))
     second = answered(one, poses([2 / 30, 0.1], 0.5))
-    assert (first["start"], second["start"]) == (0, 2)
+    assert one.frames == 4
     both = np.concatenate([unpack_positions(a["frames"]) for a in (first, second)], axis=1)
     assert both.shape == (2, 4, 22, 3)
     assert both[0, :, 0, 1] == pytest.approx(1.0 + 0.5 * np.arange(4) / 30, abs=2e-3)
@@ -223,9 +223,8 @@ def test_what_no_page_sends_is_refused_in_a_sentence(body: bytes) -> None:
 
 def test_a_message_that_spans_half_a_minute_is_not_computed_whole() -> None:
     one = stream()
-    answer = answered(one, poses([float(second) for second in range(32)]))
+    answered(one, poses([float(second) for second in range(32)]))
     assert MOST_FRAMES <= one.frames < MOST_FRAMES + 30
-    assert answer["start"] == 0
 
 
 def test_a_stream_gets_no_more_frames_than_time_has_passed() -> None:

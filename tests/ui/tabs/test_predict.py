@@ -66,7 +66,7 @@ def test_a_prediction_marks_the_past_and_shows_the_truth_as_a_ghost(tab: Predict
     truth = walking(4.0).positions
     assert np.allclose(ghost[:, :120], truth, atol=2e-3)
     assert np.allclose(ghost[:, 120:], truth[:, -1:], atol=2e-3)
-    assert [curve["key"] for curve in sample["curves"]] == ["error", "speed"]
+    assert [curve["label"] for curve in sample["curves"]] == ["Error", "Speed"]
     assert sample["curves"][0]["values"][89:92] == [0.0, 0.01, 0.02]
     assert "Made" in done["line"] and isinstance(done["record"], Record)
 
@@ -81,7 +81,7 @@ def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) 
     again = run(tab, {"source": took["state"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"})
     (sample,) = again["player"]["value"]["samples"]
     assert (sample["past_until"], sample["frames"], sample["ghost"]) == (90, 120, None)
-    assert [curve["key"] for curve in sample["curves"]] == ["speed"]
+    assert [curve["label"] for curve in sample["curves"]] == ["Speed"]
     *_, update = tab.past.take_result(None)
     assert "There is no result yet" in update[tab.line] and tab.past.file not in update, "the file is still used"
 

@@ -92,7 +92,7 @@ def test_the_player_gets_the_contacts_of_the_readouts() -> None:
     payload = result_payload(changed, title=HOSTILE)
     assert payload["title"] == HOSTILE, "the player sets it as text"
     assert payload["samples"][0]["contacts"] == [contact]
-    assert [curve["key"] for curve in payload["samples"][0]["curves"]] == ["pelvis_distance", "hand_distance"]
+    assert [curve["label"] for curve in payload["samples"][0]["curves"]] == ["Apart", "Hands"]
 
 
 def test_progress_and_cancellation_name_the_step() -> None:

@@ -3,7 +3,6 @@
 These dataclasses import no torch, so the page, the shell and the API build them before any network loads.
 """
 
-from .predict import PredictRequest, PredictResult
 from .sampling import GenerateRequest, ReactRequest, SamplingRequest
 
-__all__ = ["GenerateRequest", "PredictRequest", "PredictResult", "ReactRequest", "SamplingRequest"]
+__all__ = ["GenerateRequest", "ReactRequest", "SamplingRequest"]

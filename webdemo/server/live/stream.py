@@ -123,15 +123,12 @@ class LiveStream:
             yield None
         self.heard = self.clock()
         self.spent += spent
-        start, self.frames = self.frames, self.frames + len(frames)
+        self.frames += len(frames)
         yield {
-            "start": start,
             "frames": pack_positions(np.stack(frames, axis=1)) if frames else None,
             **(self._things() if frames else {}),
             "belief": _plain(self.partner.belief),
             "hint": self._hint(),
-            "milliseconds": round(1000 * spent, 1),
-            "mean_milliseconds": round(self.milliseconds, 1),
         }
 
     def _things(self) -> dict[str, Any]:

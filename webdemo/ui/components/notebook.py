@@ -116,7 +116,7 @@ def shown(listed: Found, *, empty: str, removed: int = 0, search: Search | None 
 
 def _card(entry: Entry) -> dict[str, Any]:
     told = {name: value for name, value in asdict(entry).items() if name not in ("request", "created")}
-    return told | {"facts": facts(entry), "settings": [list(pair) for pair in settings(entry.request)]}
+    return told | {"facts": facts(entry), "settings": settings(entry.request)}
 
 
 def made_by(label: str, asked: Mapping[str, Any]) -> list[str]:

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 import gradio as gr
 
-STATIC = Path(__file__).resolve().parents[3] / "static"
+from webdemo.ui.text.texts import STATIC
 
 _SCRIPT = """
 const config = window.gradio_config || {};

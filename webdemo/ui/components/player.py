@@ -19,11 +19,11 @@ from motion import Clip, Duet
 from motion.formats import read
 from motion.metrics import Contact
 from webdemo.inference.run import Result
-from webdemo.ui.text.texts import TEXTS, TEXTS_JS
+from webdemo.ui.text.texts import STATIC, TEXTS, TEXTS_JS
 from webdemo.ui.theme import COLOURS
 from webdemo.view.payload import Payload, build_payload, sample_payload
 
-from .part import STATIC, Part
+from .part import Part
 
 PLAYER_FOLDER = STATIC / "player"
 BODIES_FOLDER = PLAYER_FOLDER.parent / "bodies"
@@ -41,7 +41,7 @@ gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS, COLOURS, TEXTS_JS, TEXTS])
 class MotionPlayer(Part):
     """Plays one or two people in 3D.
 
-    Its value is a payload of :func:`webdemo.view.player_payload`, or None for the empty state. While
+    Its value is a payload of :func:`webdemo.view.payload.player_payload`, or None for the empty state. While
     something is being made, :func:`busy` lays a message over the scene.
 
     Args:

@@ -35,8 +35,8 @@ def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:
 def _sample(result: PredictResult, place: int) -> dict[str, Any]:
     motion = with_shown_roles(without_name(result.duets[place]), result.manifest)
     curves = [
-        Curve("error", "Error", "m", _padded(result.error, motion.num_frames, result.past_frames)),
-        Curve("speed", "Speed", "m/s", _speed(motion)),
+        Curve("Error", "m", _padded(result.error, motion.num_frames, result.past_frames)),
+        Curve("Speed", "m/s", _speed(motion)),
     ]
     return sample_payload(
         motion,

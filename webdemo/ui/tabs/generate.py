@@ -143,7 +143,7 @@ class GenerateTab(JobTab):
         classes = installed_classes()
         choices = generate_choices()
         self.model = gr.Radio(
-            [(label, name) for label, name in choices],
+            choices,
             value=GenerateRequest.model,
             show_label=False,
             container=False,

@@ -110,14 +110,9 @@ class Grids:
         if "samples" in asked:
             asked["samples"] = 1
         known = {kind.field: kind for kind in tab.kinds()}
-        across, across_values, down, down_values = fields["grid"]
-        grid = grid_of(
-            [
-                read_axis(known[field], str(values or ""))
-                for field, values in ((across, across_values), (down, down_values))
-                if field in known
-            ]
-        )
+        swept = fields["grid"]
+        pairs = zip(swept[::2], swept[1::2], strict=True)
+        grid = grid_of([read_axis(known[field], str(values or "")) for field, values in pairs if field in known])
         wanted = [tab.request(tab.cell_fields(asked, cell)) for cell in grid.cells]
         made: dict[str, Result] = {}
         for i, (name, request) in enumerate(zip(grid.names, wanted, strict=True)):

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-CLIPS = Path(__file__).resolve().parents[3] / "static" / "examples"
+from .texts import STATIC
+
+CLIPS = STATIC / "examples"
 """Folder of the example actors: motion files such as ``reach-out.npz``, one person or two each."""
 
 ARRIVAL = "shake-hands.npz"

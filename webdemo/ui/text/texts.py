@@ -6,7 +6,9 @@ import json
 from functools import cache
 from pathlib import Path
 
-TEXTS_JS = Path(__file__).resolve().parents[3] / "static" / "texts.js"
+STATIC = Path(__file__).resolve().parents[3] / "static"
+"""Folder of what browsers load."""
+TEXTS_JS = STATIC / "texts.js"
 """The module by which scripts read the texts."""
 TEXTS = TEXTS_JS.with_suffix(".json")
 
