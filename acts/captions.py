@@ -11,11 +11,9 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from acts.plan import other_of
-
 from .frames import Frame
 from .lexicon import Entry, Lexicon, kind_of, lexicon
-from .plan import Act, Plan
+from .plan import Act, Plan, other_of
 from .reading.vocabulary import closed, vocabulary
 
 VERB = re.compile(r"\[([a-z-]+)\]")
@@ -68,7 +66,7 @@ def plural(part: str) -> str:
 def worded(act: Act, caption: str) -> str:
     """An act in the words of a caption, without a full stop: "person A pats person B on the back twice"."""
     both = len(act.agents) == 2
-    other = act.patient or ("b" if act.agents[0] == "a" else "a")
+    other = act.patient or other_of(act.agents[0])
     caption = caption.replace("{a+b}", "{a}")
     caption = caption if act.part else caption.replace(" on the {part}", "").replace("'s {part}", "")
     trunk = vocabulary().part(act.part or "") in closed("trunk")  # which is touched, and touches nothing

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from acts.plan import other_of
 from motion import SMPL22, Duet
 from motion.metrics.sentences.joints import Motion, stretches
 from motion.metrics.sentences.language import check, mask_of, masks, measured
@@ -23,7 +22,7 @@ from motion.metrics.sentences.touches import has_sides
 from .accounting import account, shown_caption
 from .captions import VERB, by_limb, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
-from .plan import ON_TIPTOE, Act, Plan
+from .plan import ON_TIPTOE, Act, Plan, other_of
 from .qualifiers import body_part, plain, qualifiers, side_of, travels
 from .reading.vocabulary import closed
 from .shapes import Lift

@@ -245,7 +245,7 @@ def nouns_in(text: str) -> list[tuple[str, str]]:
 
 def is_fixture(noun: str | None) -> bool:
     """True for a noun of what stands where it is, such as a window, so that people go to it and face it."""
-    return bool(noun) and kind_of(noun or "") in FIXTURES
+    return kind_of(noun or "") in FIXTURES
 
 
 def is_listed(text: str, name: str) -> bool:

@@ -252,12 +252,10 @@ def _relations(acts: Sequence[Act]) -> Iterator[tuple[str, str, str]]:
     """Each relation as (later or equal act, kind, other act)."""
     for act in acts:
         for relation in act.order:
-            if relation.kind == "before":
+            if relation.kind in ("before", "until"):
                 yield relation.act, "after", act.id
             elif relation.kind == "after":
                 yield act.id, "after", relation.act
-            elif relation.kind == "until":
-                yield relation.act, "after", act.id
             else:
                 yield act.id, "with", relation.act
                 yield relation.act, "with", act.id

@@ -209,6 +209,4 @@ def _split(joint: Array, start: int, stop: int, blend: int) -> list[tuple[int, i
 
 def _fade(stands: NDArray[np.bool_], blend: int) -> Array:
     """(T, 1) 1 through contacts, easing to 0 over ``blend`` frames outside."""
-    if not stands.any():
-        return np.zeros((len(stands), 1))
-    return smoothstep(1 - frames_from(stands) / (blend + 1))[:, None]
+    return smoothstep(1 - frames_from(stands) / (blend + 1))[:, None] * stands.any()

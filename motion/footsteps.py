@@ -22,7 +22,7 @@ from .limbs import solve_two_bones
 from .skeleton import LEGS
 from .smoothing import minimum_jerk
 from .transforms import facing
-from .vectors import FLAT, Array, floor_speed, heading_of, runs, unit, wrapped
+from .vectors import FLAT, Array, floor_speed, heading_of, left_of, runs, unit, wrapped
 
 _MOVES = 0.25
 """Metres a second of a body that goes somewhere."""
@@ -198,7 +198,6 @@ _BESIDE, _OUT = 0.1, math.radians(8.0)
 """Metres from the middle to an ankle of a foot under the hips, and the radians that its toes are turned out."""
 _LEAVES = 0.4
 """Metres a second of a foot that leaves where it stood."""
-_UP = np.array([0.0, 1.0, 0.0])
 
 
 @dataclass(frozen=True)
@@ -244,7 +243,7 @@ def pivoting(positions: Array, fps: float) -> Array:
 def _turns(positions: Array, feet: Array, forward: Array, fps: float) -> list[Turn]:
     """The turns of a body over its feet, from and, where they come there, to where these are under it."""
     yaw = np.unwrap(heading_of(forward))
-    apart = np.sum((feet[:, 0, 0] - feet[:, 1, 0]) * np.cross(_UP, forward), axis=-1)
+    apart = np.sum((feet[:, 0, 0] - feet[:, 1, 0]) * left_of(forward), axis=-1)
     off = np.abs(wrapped(heading_of(feet[:, :, 1] - feet[:, :, 0]) - yaw[:, None])).max(axis=1)
     stands = (positions[:, 0, 1] > UPRIGHT) & (feet[:, :, 1, 1].min(axis=1) < ON_FLOOR)
     behind, under = stands & ((apart < _CROSSED) | (off > _TWISTED)), (apart > _OPEN) & (off < _ALONG)
@@ -297,7 +296,7 @@ def _pivot_steps(forward: Array, turn: Turn, fps: float) -> list[Step]:
 
 def _under(pelvis: Array, forward: Array, feet: Array) -> Array:
     """Feet (T, 2, 2, 3) that stand under the hips, as they are turned, and are as long as the feet were."""
-    across = np.cross(_UP, forward)
+    across = left_of(forward)
     standing = feet.copy()
     for side, out in ((0, 1.0), (1, -1.0)):
         along = math.cos(_OUT) * forward + out * math.sin(_OUT) * across

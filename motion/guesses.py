@@ -11,13 +11,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from motion.skeleton import POINTS17, SKELETONS, Skeleton
-from motion.vectors import unit
-
 from .clip import Clip
 from .rigs import RigMotion
-from .skeleton import LAYOUTS, SMPL22
-from .vectors import Array
+from .skeleton import LAYOUTS, POINTS17, SKELETONS, SMPL22, Skeleton
+from .vectors import Array, unit
 
 Places = Mapping[str, Array]
 """(T, 3) of the joints that a person has, by SMPL22's names, in the file's axes and unit."""

@@ -106,12 +106,10 @@ def followed_rotations(positions: Array) -> Array:
         if len(children) > 1:
             bones = positions[:, list(children)] - positions[:, joint, None]
             world[:, joint] = kabsch(SMPL22.offsets[list(children)], bones)
-    if single:
-        joints, ends = np.array(single).T
-        bones = positions[:, ends] - positions[:, joints]
-        turns = swing(bones[:-1], bones[1:])
-        for frame, turn in enumerate(turns, start=1):
-            world[frame, joints] = turn @ world[frame - 1, joints]
+    joints, ends = np.array(single).T
+    bones = positions[:, ends] - positions[:, joints]
+    for frame, turn in enumerate(swing(bones[:-1], bones[1:]), start=1):
+        world[frame, joints] = turn @ world[frame - 1, joints]
     return quaternions(world)
 
 

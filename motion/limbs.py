@@ -144,7 +144,7 @@ def open_limb(root: Array, middle: Array, end: Array) -> Array:
     """(…, 1) from 0, where a limb is folded so far that the line between its ends has no direction, to 1."""
     length = np.linalg.norm(middle - root, axis=-1) + np.linalg.norm(end - middle, axis=-1)
     reach = np.linalg.norm(end - root, axis=-1) / np.maximum(length, 1e-9)
-    return smoothstep((reach - _FOLDED[0]) / (_FOLDED[1] - _FOLDED[0]))[..., None]
+    return smoothstep(reach, *_FOLDED)[..., None]
 
 
 def heel_raised(hip: Array, ankle: Array, toe: Array, leg: Array) -> Array:

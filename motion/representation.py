@@ -23,12 +23,12 @@ CONTACT_HEIGHTS = np.array([0.12, 0.05, 0.12, 0.05])
 stand on the floor."""
 
 # The released data is Z-up.
-_Z_UP_TO_Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+Z_UP_TO_Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
 def upright(raw: Array) -> Array:
     """(T, 22, 3) metres, Y up, of InterHuman's frames (T, 66 or more), which begin with 22 places, Z up."""
-    return raw[:, :66].astype(np.float64).reshape(-1, 22, 3) @ _Z_UP_TO_Y_UP.T
+    return raw[:, :66].astype(np.float64).reshape(-1, 22, 3) @ Z_UP_TO_Y_UP.T
 
 
 def encode_person(positions: Array, rotations: Array | None = None) -> Array:

@@ -19,7 +19,7 @@ from .skeleton import ARMS, LEGS, SMPL22, TOES
 from .smoothing import begun_before, eased_marks, smoothstep, without_flicker
 from .touch.arms import arms_apart
 from .transforms import facing
-from .vectors import FLAT, Array, rotations_by, unit
+from .vectors import FLAT, Array, left_of, rotations_by, unit
 
 _ON_FEET = (0.55, 0.75)
 """Heights in metres of an adult's pelvis up to which the feet go with the body and nobody stoops, and from which they
@@ -344,7 +344,7 @@ def _too_short(pair: Array, touch: _Touches) -> Array:
 def _stooped(own: Array, other: Array, lean: Array, short: Array) -> Array:
     """A person (T, 22, 3) who leans to the other by radians (T,) and bends the knees, over feet that stay."""
     way = unit((other[:, _NECK] - own[:, _NECK]) * FLAT)
-    axis = np.cross([0.0, 1.0, 0.0], way)
+    axis = left_of(way)
     turn = rotations_by(lean[:, None] * axis)
     moved = own.copy()
     leaned = own[:, :1] + np.einsum("tij,tkj->tki", turn, own - own[:, :1])

@@ -11,6 +11,7 @@ from typing import Any
 from acts.frames import Event, Frame, Match, Ref, best
 from acts.lexicon import Lexicon
 from acts.plan import Act, Span, other_of
+from motion.skeleton import OTHER_SIDE
 
 from . import wordnet
 from .ellipsis import PERFORM
@@ -236,9 +237,6 @@ def _is_implied(subject: Ref | None) -> bool:
 
 
 # ---- repeats -------------------------------------------------------------------------------------------
-_MIRRORED = {"left": "right", "right": "left"}
-
-
 def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[str, Any] | None:
     """Fields by which an event does the last act once more; None where it says something else.
 
@@ -270,7 +268,7 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
     both = len(agents) > 1 or last.patient is None
     offer = declines and last.act == "offer-thing" and agents == (last.patient,)
     taken = ("hold-hands" if last.part else "take-from") if offer else last.act  # what does not happen
-    sides = _MIRRORED if event.lemma == "mirror" else {}
+    sides = OTHER_SIDE if event.lemma == "mirror" else {}
     return {
         "act": taken,
         "agents": agents,
@@ -296,7 +294,7 @@ def seated(event: Event, match: Found, known: Lexicon, told: Iterable[str]) -> E
     """The event that somebody sits where a phrase says so: "reads in his armchair".
 
     Args:
-        event, found: the verb and its act.
+        event, match: the verb and its act.
         known: the lexicon.
         told: people of whom the text has told something before.
     """

@@ -239,10 +239,10 @@ class Cast:
         self.last = who
         return who
 
-    def address(self, who: str) -> None:
-        """Says that an order is given to this person."""
+    def address(self) -> None:
+        """Says that an order is given to person a."""
         if not self._has("you"):
-            self._as(who, "you")
+            self._as("a", "you")
 
     def sex(self, who: str) -> str:
         """The sex of a person, as far as the words have told it."""

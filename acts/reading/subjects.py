@@ -234,7 +234,7 @@ class Subjects:
                 or any(t.lower_ in closed("somebody") or self._is_someone(t) for t in token.subtree)
             )
             if alone:
-                self._cast.address("a")
+                self._cast.address()
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
         return None
 
@@ -262,8 +262,7 @@ class Subjects:
         for child in (*token.children, *moving):
             if child.dep_ in _SUBJECTS or (child.dep_ == "nummod" and child.lower_ == "one"):  # "one jumps"
                 if child.tag_ in ("WP", "WDT") and (token.dep_ == "relcl" or child.lower_ == "who"):
-                    antecedent = self._antecedent(token) if token.dep_ == "relcl" else None
-                    return antecedent
+                    return self._antecedent(token) if token.dep_ == "relcl" else None
                 if child.tag_ in ("VBZ", "VBD") and (known := self._found.get(child.i)) is not None:
                     return known  # "she leans back, then kicks"
                 # "helps him get up"
@@ -321,8 +320,7 @@ def other_person(ref: Ref) -> Ref | None:
 
 def is_passive(token: Token) -> bool:
     """True for a passive of its own: "is pushed", "pushed by her"."""
-    signs = has(token, "nsubjpass", "auxpass", "agent")
-    return signs and token.tag_ == "VBN"
+    return token.tag_ == "VBN" and has(token, "nsubjpass", "auxpass", "agent")
 
 
 def goes_on(token: Token) -> bool:

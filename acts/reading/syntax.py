@@ -256,7 +256,7 @@ class ClauseTree:
         doc: the parsed text.
         verbs: lemmas that some entry reads.
         lemmas: lemmas known better than by the parser, by token.
-        forms: (lemma, tag) of a verb's form, where the parser knows no such verb.
+        forms: (lemma, ending) of a verb's form, where the parser knows no such verb.
         held: words, by token, that only say how a part of the body is held.
     """
 

@@ -34,7 +34,7 @@ class Vocabulary:
             for noun in nouns.split()
         }
         self.both = frozenset(tables["groups"]["both"].split())
-        self._parts = {word: family for family, text in tables["body"].items() for word in (family, *text.split())}
+        self._parts = {word: family for family, text in tables["body"].items() for word in text.split()}
         named = ["directions", "speeds", "gaits", "likeness", "marks", "noun_marks", "shorthand"]
         named += ["numbers", "metres", "seconds"]
         by_word = {table: {w: name for name, text in tables[table].items() for w in text.split()} for table in named}

@@ -1,7 +1,7 @@
 """The floor of a beat: the moves of two people as places and headings over time.
 
-The floor is seen from above, in metres of the scene's world; headings are radians from +Z towards +X. A place is
-given once a second and the network does the walking between; where people touch, the way is left free.
+The floor is seen from above, in metres of the scene's world; headings are radians from +Z towards +X. Places of a
+walk are given every few frames, and of somebody who stays once a second; where people touch, the way is left free.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from motion.skeleton import FEET, SIDES
-from motion.vectors import Array, floor_points, leftwards, unit
+from motion.vectors import Array, floor_points, left_of, leftwards, unit
 
 from .lifts import stepping
 from .places import EVENLY
@@ -88,7 +88,7 @@ def joined(hold: str, places: Array) -> Array:
     """
     a, b = (floor_points(place) for place in places)
     ahead = (b - a) / np.linalg.norm(b - a, axis=-1, keepdims=True).clip(min=1e-6)
-    left = np.cross([0.0, 1.0, 0.0], ahead)  # of a
+    left = left_of(ahead)  # of a
     middle, up = (a + b) / 2, np.array([0.0, 1.0, 0.0])
     if hold == EMBRACE:  # the left arm is over the other's, the right one under it
         over, under = (0.14 * ahead + wide * left + high * up for wide, high in ((0.06, 1.3), (-0.04, 1.1)))

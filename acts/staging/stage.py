@@ -16,6 +16,7 @@ from acts import shapes
 from acts.captions import of_each
 from acts.lexicon import Entry, Lexicon, is_fixture, kind_of, lexicon
 from acts.plan import FROM_BEHIND, ON_TIPTOE, Act, beats, other_of
+from motion.skeleton import OTHER_SIDE
 
 from .act_kinds import (
     figure_of,
@@ -56,8 +57,6 @@ _MOST = 5
 """Times that something is done in one beat, at most."""
 _TO_THING = 0.3
 """Of a whole turn: by how much somebody turns from the other to point at a thing."""
-_ACROSS = {"left": "right", "right": "left"}
-"""The side of somebody that is across from one of the person who faces them."""
 _RIGHTWARDS = ("right", "clockwise")
 """Directions to the right, and those of a turn to the right."""
 _LEGS = frozenset(("dance", "fight", "ways", "play"))
@@ -130,18 +129,18 @@ class _Stage:
             for shape in () if is_manner(entry) and len(self.done) > 1 else entry.stage:
                 self._take(act, shape)
         for act in self.acts:
-            refused = self.known.entries[act.act].refused if act.act in self.known.entries else ()
-            if act.polarity == "not" and act.modality == "told" and len(act.agents) == 1:
-                for shape in refused:
-                    self._take(act, shape)
-            elif not act.happens and act.polarity == "done" and len(act.agents) == 1:  # it is offered in vain
-                for shape in refused:
+            if act.happens or len(act.agents) != 1 or act.act not in self.known.entries:
+                continue
+            for shape in self.known.entries[act.act].refused:
+                if act.polarity == "done":  # it is offered in vain
                     self._take(act, shape.model_copy(update={"who": "agent"}))
+                elif act.modality == "told":
+                    self._take(act, shape)
         acting = {who for act in self.acts for who in act.agents}
         for act, entry in self.done:
             if entry.reaction and len(act.agents) == 1 and (other := other_of(act.agents[0])) not in acting:
                 self.reacting.add(other)
-                facing = act.model_copy(update={"side": _ACROSS.get(act.side or "")})
+                facing = act.model_copy(update={"side": OTHER_SIDE.get(act.side or "")})
                 for shape in entry.reaction:
                     self._take(facing, shape.model_copy(update={"who": "patient"}))
         self._agree()

@@ -17,7 +17,7 @@ from motion.smoothing import smoothstep
 from motion.things import FIXTURES, Thing, kinds, shape
 from motion.things.hands import Hands, level, smoothed
 from motion.transforms import heading_matrix
-from motion.vectors import FLAT, Array, heading_of
+from motion.vectors import FLAT, Array, heading_of, left_of
 
 from .uses import Use
 
@@ -292,7 +292,7 @@ def _clear(hands: Hands, kind: str, place: Array, ahead: Array) -> float:
         return 0.0
     vertices = shape(BODIES.get(kind, kind)).vertices
     low, high = vertices.min(axis=0) - FOOT, vertices.max(axis=0) + FOOT
-    across = np.cross([0.0, 1.0, 0.0], ahead)
+    across = left_of(ahead)
     legs = hands.positions[:, :, LEGS].reshape(-1, 3) - place
     own = np.stack([legs @ across, legs[:, 1], legs @ ahead], axis=1)
     beside = (own[:, [0, 1]] >= low[[0, 1]]).all(axis=1) & (own[:, [0, 1]] <= high[[0, 1]]).all(axis=1)

@@ -36,7 +36,6 @@ class Use:
         side: "left", "right" or "".
         start, stop: frames between which it happens.
         on: kind of furniture that it is put on, or that people sit at; "" for none.
-        words: of the act.
     """
 
     id: str
@@ -49,7 +48,6 @@ class Use:
     start: int
     stop: int
     on: str = ""
-    words: str = ""
 
 
 def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float]) -> list[Use]:
@@ -136,7 +134,7 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
             return None
         seats = [noun for noun in nouns_in(f"{words} {act.thing or ''}") if noun[1] in SEATS]
         name, kind = seats[0] if seats else ("chair", "")
-        return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
+        return Use(act.id, does, kind, name, agents, other, side, start, stop, place)
     name, kind = thing_of(act, words)
     struck = does == "holds" and kind == "ball" and entry is not None and entry.prop not in ("", kind)
     if does == "uses" and kind not in HELD:
@@ -152,7 +150,7 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
     if does == "holds" and len(agents) == 2 and act.thing and kind not in ONE_EACH:
         does = "carries"
     on = place if does in ("puts", "drops") and place != kind else ""
-    return Use(act.id, does, kind, name, agents, other, side, start, stop, on, words)
+    return Use(act.id, does, kind, name, agents, other, side, start, stop, on)
 
 
 def _fixture(act: Act, words: str, start: int, stop: int) -> Use | None:
@@ -163,7 +161,7 @@ def _fixture(act: Act, words: str, start: int, stop: int) -> Use | None:
     entry = lexicon().entries.get(act.act)
     does = entry.thing if entry and entry.thing in ("opens", "closes", "carries") else "faces"
     agents = tuple("ab".index(who) for who in act.agents)
-    return None if does == "carries" else Use(act.id, does, kind, name, agents, None, "", start, stop, words=words)
+    return None if does == "carries" else Use(act.id, does, kind, name, agents, None, "", start, stop)
 
 
 def _place(words: str) -> str:
@@ -177,4 +175,4 @@ def _door(act: Act, words: str, start: int, stop: int) -> Use | None:
     if not (door := _THROUGH.search(words.lower())):
         return None
     agents = tuple("ab".index(who) for who in act.agents)
-    return Use(act.id, "passes", "door frame", door[1], agents, None, "", start, stop, words=words)
+    return Use(act.id, "passes", "door frame", door[1], agents, None, "", start, stop)

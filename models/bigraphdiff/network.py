@@ -24,6 +24,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from models import layers
 from models.layers import encoder_layer
 from models.released import Released
 
@@ -106,18 +107,16 @@ class CrossAttention(Attention):
         return x + self.proj_out(efficient_attention(query, self.key(tokens), self.value(tokens), self.num_heads), emb)
 
 
-class FeedForward(nn.Module):
+class FeedForward(layers.FeedForward):
     """Linear, GELU, Linear, stylised."""
 
     def __init__(self, latent_dim: int, ff_size: int, embed_dim: int) -> None:
-        super().__init__()
-        self.linear1 = nn.Linear(latent_dim, ff_size)
-        self.linear2 = nn.Linear(ff_size, latent_dim)
+        super().__init__(latent_dim, ff_size)
         self.proj_out = StylizationBlock(latent_dim, embed_dim)
 
-    def forward(self, x: Tensor, emb: Tensor) -> Tensor:
+    def forward(self, x: Tensor, emb: Tensor) -> Tensor:  # type: ignore[override]  # one more input
         """x (B, T, d), emb (B, E) → (B, T, d)."""
-        return x + self.proj_out(self.linear2(F.gelu(self.linear1(x))), emb)
+        return x + self.proj_out(super().forward(x), emb)
 
 
 class GraphConvolution(nn.Module):

@@ -18,6 +18,7 @@ from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.kinematics import forward_kinematics
 from motion.looks import size_of
+from motion.representation import Z_UP_TO_Y_UP
 from motion.sizes import of_adults
 from motion.skeleton import SMPL22
 from motion.vectors import rotation_vectors, rotations_by
@@ -50,7 +51,6 @@ _POSES = 156
 _BETAS = 16
 _AT_ONCE = 4096
 """Frames of which rotations are made at a time."""
-_Z_UP_TO_Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
 def has_parameters(arrays: Mapping[str, Array]) -> bool:
@@ -157,14 +157,14 @@ def smpl_bytes(clip: Clip) -> bytes:
     """
     check_smpl(clip, SUFFIX)
     rotations, _ = rigged(clip)
-    rotations[:, 0] = _Z_UP_TO_Y_UP.T @ rotations[:, 0]
+    rotations[:, 0] = Z_UP_TO_Y_UP.T @ rotations[:, 0]
     poses = np.zeros((clip.num_frames, _POSES))
     poses[:, :_BODY] = rotation_vectors(rotations).reshape(clip.num_frames, _BODY)
     buffer = io.BytesIO()
     np.savez_compressed(
         buffer,
         poses=poses,
-        trans=clip.positions[:, 0].astype(np.float64) @ _Z_UP_TO_Y_UP - PELVIS,
+        trans=clip.positions[:, 0].astype(np.float64) @ Z_UP_TO_Y_UP - PELVIS,
         betas=np.zeros(_BETAS),
         gender=np.array("neutral"),
         mocap_frame_rate=np.float64(clip.fps),

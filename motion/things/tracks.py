@@ -6,7 +6,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 
 from motion.smoothing import smoothstep
-from motion.vectors import FLAT, Array, rotations_by, slerp, square_frame, unit
+from motion.vectors import FLAT, Array, left_of, rotations_by, slerp, square_frame, unit
 
 from .hands import Hands, level, smoothed
 from .thing import Mesh
@@ -68,13 +68,13 @@ def _before(hands: Hands, person: int, mesh: Mesh) -> Track:
     out = np.einsum("ti,ti->t", middle - pelvis, ahead)
     aside = (middle - pelvis - out[:, None] * ahead) * FLAT
     place = middle + np.maximum(least - out, 0.0)[:, None] * ahead - 0.5 * aside
-    return place, upright_frame(np.cross(_UP, ahead))
+    return place, upright_frame(left_of(ahead))
 
 
 def _played(hands: Hands, person: int) -> Track:
     """A guitar before the belly, its neck towards the left hand."""
     ahead = hands.ahead[person]
-    left = np.cross(_UP, ahead)
+    left = left_of(ahead)
     belly = hands.joint(person, "spine1") + 0.19 * ahead - 0.1 * left
     neck = hands.palms[person, 0] - belly
     neck = neck - np.einsum("ti,ti->t", neck, ahead)[:, None] * ahead
@@ -119,7 +119,7 @@ class Course:
         begin = self.places[start].copy()
         speed = (goal - begin) / seconds + np.array([0.0, GRAVITY * seconds / 2, 0.0])
         way = begin + now[:, None] * speed - np.array([0.0, GRAVITY / 2, 0.0]) * now[:, None] ** 2
-        axis = unit(np.cross(_UP, goal - begin))
+        axis = unit(left_of(goal - begin))
         spin = rotations_by(axis * (2 * np.pi * now / max(seconds, 0.8))[:, None])
         self.rotations[start : start + len(now)] = spin @ self.rotations[start]
         self.places[start : start + len(now)] = way
@@ -138,7 +138,7 @@ class Course:
         drop = np.maximum(begin[1] - radius - GRAVITY / 2 * now**2, 0.0)
         self.places[start:] = begin * FLAT + along[:, None] * ahead
         self.places[start:, 1] = radius + drop
-        spin = rotations_by(np.cross(_UP, ahead) * (along / radius)[:, None])
+        spin = rotations_by(left_of(ahead) * (along / radius)[:, None])
         self.rotations[start:] = spin @ self.rotations[start]
 
     def bounce(self, under: Array, start: int, stop: int, radius: float) -> None:

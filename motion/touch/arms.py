@@ -150,15 +150,13 @@ def _pushes(own: Array, other: Array, grips: Array, own_size: float, other_size:
         depth = np.maximum(own_size * _RADII[:, None] + other_size * _BODY.radii - soft - distance, 0.0)
         if not depth.any():
             continue
-        held = grips[:, side, None, None] * np.array([lower for lower, _ in _SHARES])[:, None]
+        lower = np.array([share for share, _ in _SHARES])
+        held = grips[:, side, None, None] * lower[:, None]
         depth *= np.where(an_arm, 1 - held, 1.0)
         weights = depth * give
-        total = weights.sum(axis=-1)
         way = np.einsum("npc,npci->npi", weights / np.maximum(distance, _ON_LINE), out)
         size = np.linalg.norm(way, axis=-1, keepdims=True)
-        push = way / np.maximum(size, 1e-9) * (depth * give).max(axis=-1)[..., None]
-        push[total <= 0] = 0.0
-        lower = np.array([share for share, _ in _SHARES])
+        push = way / np.maximum(size, 1e-9) * weights.max(axis=-1)[..., None]
         for joint, weight in ((0, 1 - lower), (1, lower)):
             each = push * weight[:, None]
             biggest = np.abs(each).max(axis=1)

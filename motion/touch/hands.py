@@ -219,11 +219,11 @@ def backs_straight(pair: Array, free: Array) -> Array:
 
 def _straightened(person: Array, arm: Arm, share: Array) -> Array:
     """A person (T, 22, 3) whose upper back is straight by a ``share`` (T,), one hand where it was."""
-    ahead, up = facing(person), np.array([0.0, 1.0, 0.0])
+    ahead = facing(person)
     back = person[:, _NECK] - person[:, _SPINE]
     leans = np.arctan2(np.sum(back * ahead, axis=-1), back[:, 1])
     angle = -share * np.clip(leans - _STRAIGHT, 0.0, _MOST)
-    turn = rotations_by(angle[:, None] * np.cross(up, ahead))
+    turn = rotations_by(angle[:, None] * left_of(ahead))
     moved = person.copy()
     spine = person[:, _SPINE, None]
     moved[:, _BACK] = spine + np.einsum("tij,tkj->tki", turn, person[:, _BACK] - spine)

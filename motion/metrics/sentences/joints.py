@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.metrics.interaction import palms
+from motion.skeleton import SIDES
 from motion.transforms import facing
 from motion.vectors import FLAT, Array, runs, square_frame
 
@@ -18,9 +19,6 @@ _SMOOTH = 0.15
 """Seconds: standard deviation of the filter over root paths and headings, which takes out a step's sway."""
 _A_CHILD = 0.87
 """Length of the thighs, as a share of an adult's, below which somebody is a child."""
-SIDES = ("left", "right")
-
-
 _LIMBS = ("wrist", "elbow", "knee", "ankle")
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import scipy  # its parts are loaded with their first use
 
-from .joints import SIDES, Array, Mask, Motion, flat, keep, predicate
+from motion.skeleton import SIDES
+
+from .joints import Array, Mask, Motion, flat, keep, predicate
 
 
 # ---- the body's height -----------------------------------------------------------------------------------

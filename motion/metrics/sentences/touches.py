@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import scipy  # its parts are loaded with their first use
 
-from .joints import SIDES, Array, Mask, Motion, keep, predicate
+from motion.skeleton import SIDES
+
+from .joints import Array, Mask, Motion, keep, predicate
 from .paths import beside
 
 _TABLES = tomllib.loads(Path(__file__).with_name("body.toml").read_text(encoding="utf-8"))
