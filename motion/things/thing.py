@@ -43,7 +43,7 @@ class Mesh:
         if faces.ndim != 2 or faces.shape[1] != 3 or not 1 <= len(faces) <= MOST_FACES:
             raise InputError(f"A thing has 1 to {MOST_FACES:,} triangles (F, 3), not {faces.shape}.")
         if colours.shape != faces.shape:
-            raise InputError(f"A thing has a colour a triangle, not {colours.shape} for {faces.shape}.")
+            raise InputError(f"A thing has one colour per triangle, not {colours.shape} for {faces.shape}.")
         if not np.isfinite(vertices).all() or faces.min() < 0 or faces.max() >= len(vertices):
             raise InputError("The surface of a thing is damaged: its vertices are not finite, or a corner is missing.")
         for name, value in (("vertices", vertices), ("faces", faces), ("colours", colours)):

@@ -108,7 +108,7 @@ BUILT_IN = (
     Method(
         name="intergen-together",
         label="InterGen, both together",
-        summary="Draws several futures of two people who know of each other; it needs both, and draws others with "
+        summary="Draws several futures of two people who see each other; it needs both, and draws others with "
         "another seed.",
         tasks=("predict",),
         takes=frozenset({"past", "two people"}),

@@ -143,7 +143,7 @@ class LiveAgent:
             self._looks.clear()
             self._rest()
             if self._gone:
-                self.belief = Belief("left", "The person has looked away for long, so the agent leaves.")
+                self.belief = Belief("left", "The person has looked away for a long time, so the agent leaves.")
             elif self._away >= IGNORED:
                 self.belief = Belief("ignored", "The person looks away, so the agent waits.")
             else:

@@ -61,7 +61,7 @@ _RELEASES = (
             load=partial(load_pipeline, "intergen.ReleasedInterGenPipeline"),
         ),
         mark="decoder.net.blocks.",
-        loss="Of its 262 numbers a person and frame the positions are kept.",
+        loss="Of its 262 numbers per person and frame, only the positions are kept.",
         needed=("checkpoint", "mean", "std"),
         kept=("model.",),
     ),
@@ -78,7 +78,7 @@ _RELEASES = (
             load=partial(load_pipeline, "regennet.ReleasedReGenNetPipeline"),
         ),
         mark="cmo_process.poseEmbedding.",
-        loss="Of SMPL-X's 55 joints the 22 of the body are kept.",
+        loss="Of SMPL-X's 55 joints, only the 22 of the body are kept.",
         modes=_regennet_modes,
     ),
     Release(

@@ -290,7 +290,7 @@ def hold_of(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Hold:
         at = _frames(part, frames)
         beside = isinstance(part, KnownFrames) and part.joints and 0 not in part.joints
         if not beside and known.mask[0, part.person, at][:, 0].any():
-            raise InputError(f"Two given parts say where person {'ab'[part.person]} is at one time: give one.")
+            raise InputError(f"Two given parts say where person {'ab'[part.person]} is at the same time: give one.")
         if isinstance(part, KnownFrames):
             poses = torch.from_numpy(np.asarray(part.positions)).float()
             if part.joints:

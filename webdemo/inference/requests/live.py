@@ -54,7 +54,7 @@ class LiveTake:
     def __post_init__(self) -> None:
         check_partner(self.model)
         if self.actor.positions.shape != self.reactor.positions.shape:
-            raise InputError("The two people of a live stream must have as many frames and joints.")
+            raise InputError("The two people of a live stream must have the same number of frames and joints.")
         if self.actor.num_frames < SHORTEST * self.actor.fps:
             raise InputError("This live stream is shorter than a second: let it go on for longer.")
         if self.actor.seconds > LONGEST + 1:
