@@ -21,7 +21,7 @@ from .reading import read
 
 
 def check_folder(folder: Path) -> Iterator[str]:
-    """A sentence, with file and line, for everything that is wrong with the entries of a folder."""
+    """A sentence, with the file and the line or entry, for everything that is wrong with the entries of a folder."""
     entries: dict[str, Entry] = {}
     problems = [problem for path in files(folder) for problem in read_file(path, entries)]
     yield from problems

@@ -113,7 +113,9 @@ class FloorPath:
             if before is not None:
                 gap = seconds - (before.seconds or 0.0)
                 if round(gap * FPS) < 1:
-                    raise InputError(f"Points {i - 1} and {i} of the path of {who} are at the same time: give later times.")
+                    raise InputError(
+                        f"Points {i - 1} and {i} of the path of {who} are at the same time: give later times."
+                    )
                 speed = math.hypot(point.x - before.x, point.z - before.z) / gap
                 if speed > MOST_SPEED:
                     raise InputError(
