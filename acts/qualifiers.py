@@ -44,8 +44,9 @@ def qualifiers(
     caption = shown_caption(act, entry, said)
     words = said_words((caption,))
     goes = next((shape for shape in entry.stage if isinstance(shape, Go)), None)
-    if act.times is not None and not (names & {"n", "several"} or (goes and act.distance is not None)):
-        yield "how often", _so_often(act, entry, who)
+    if act.times is not None and not names & {"n", "several"}:
+        steps = goes and act.distance is not None
+        yield ("how many steps", "") if steps else ("how often", _so_often(act, entry, who))
     if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
         yield "which side", ""
     if act.part_side and not ("part" in names and has_sides(body_part(act))):
@@ -105,6 +106,7 @@ def plain(act: Act, kinds: frozenset[str]) -> Act:
     """An act without the qualifiers of these kinds."""
     left: dict[str, dict[str, object]] = {
         "how often": {"times": None},
+        "how many steps": {"times": None},
         "which side": {"side": None, "part_side": None},
         "with both hands": {"side": None},
         "on both sides": {"side": None},

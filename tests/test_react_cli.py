@@ -11,6 +11,7 @@ from motion import SMPL22, Clip, Duet, InputError
 from motion.formats import ImportChoices, read, write
 from tests.motion.bodies import marching, swaying
 from tests.motion.formats.characters import glb_takes
+from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo import cli
 from webdemo.cli import generation
 from webdemo.inference.requests import ReactRequest
@@ -98,6 +99,20 @@ def test_the_other_person_of_a_file_says_where_to_begin(
     one = write(standing(120), tmp_path / "one.npz")[0]
     code, _, said = react(capsys, "--actor", one, "--keep-start", "--model", "regennet", "--out", words[-1])
     assert code == 2 and "does not hold two people" in said
+
+
+def test_the_rate_and_the_upper_axis_of_a_file_can_be_told(
+    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
+) -> None:
+    positions, rotations = marching(90)
+    path = tmp_path / "slow.bvh"
+    path.write_text(bvh_text(rotations, positions[:, 0], RIGS["mixamo"], frame_time=0.1))
+    words = ["--actor", path, "--out", tmp_path / "x.npz"]
+    for more, seconds, stands in (([], 9.0, True), (["--file-fps", 30], 3.0, True), (["--file-up", "z"], 9.0, False)):
+        assert react(capsys, *words, *more)[0] == 0
+        actor = asked[-1].actor
+        assert actor.seconds == pytest.approx(seconds, abs=0.2)
+        assert bool(actor.positions[:, SMPL22.index("head"), 1].min() > 1.3) is stands
 
 
 @pytest.mark.parametrize(

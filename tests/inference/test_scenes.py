@@ -30,6 +30,15 @@ def test_a_scene_has_the_length_of_its_beats_and_says_what_made_it(story: Result
     assert story.readouts[0]["after"]
 
 
+def test_nobody_jolts_where_one_beat_of_a_story_ends(shipped: Engine) -> None:
+    words = ("They walk up to each other and shake hands.", "They talk.", "They part.")
+    request = SceneRequest(beats=tuple(Beat(each, seconds=4.0) for each in words), seed=0)
+    jolts = np.linalg.norm(np.diff(positions(run(shipped, request)), 2, axis=1), axis=-1).max(axis=(0, 2))
+    usual = np.quantile(jolts, 0.99)
+    for seam in (120, 240):
+        assert jolts[seam - 6 : seam + 6].max() < 1.5 * usual
+
+
 def test_one_beat_is_what_plain_generation_gives(engine: Engine) -> None:
     """But for the finish of a scene, in which people who stand shift their weight."""
     plainly = {"seed": 5, "cleanup": False, **QUICK}

@@ -249,3 +249,9 @@ def test_a_formation_goes_on_as_its_verb_does() -> None:
 )
 def test_the_thing_of_an_act_is_what_it_is_done_with_or_before(text: str, acts: list[str]) -> None:
     assert [f"{act.act} {act.thing}" for act in read(text).acts] == acts
+
+
+def test_an_act_on_which_two_parses_disagree_is_said() -> None:
+    plan = read("A man tries to stand on one foot but stumbles.")
+    assert [doubt.why for doubt in plan.doubts] == ["“stumbles” may also mean: stumble."]
+    assert not read("A man waves.").doubts

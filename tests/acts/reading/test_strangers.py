@@ -13,6 +13,12 @@ from tests.acts.reading.reading import told
         # what is refused is what one would do with an offer
         ("A offers B a cup and B refuses it.", [("offer-thing", "a", "b"), ("take-from", "b", "a")]),
         ("A holds out a hand and B refuses it.", [("offer-thing", "a", "b"), ("hold-hands", "b", "a")]),
+        # a list behind two who come to each other, and what nobody can show
+        (
+            "They walk up to each other and hug. Then they dance together.",
+            [("walk-up", "ab", None), ("hug", "ab", None), ("dance", "ab", None)],
+        ),
+        ("A dragon eats the moon.", []),
         # a hand that is caught, where nobody falls
         ("A catches B by the wrist.", [("hold-hands", "a", "b")]),
         # an act that the next one begins with

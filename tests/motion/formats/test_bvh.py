@@ -51,6 +51,28 @@ def test_rigs_that_lack_joints(lacking):
     assert np.linalg.norm(found - truth, axis=-1)[:, spared].max() < 0.08
 
 
+@pytest.mark.parametrize("helper", ["HipJoint", "Hip_helper_Joint"])
+def test_a_helper_at_the_root_is_no_hip(helper):
+    text = bvh_text(ROTATIONS, ROOT, RIGS["xsens"])
+    head, numbers = text.split("MOTION\n")
+    widths = [int(line.split()[1]) for line in head.splitlines() if line.startswith("CHANNELS")]
+    names = [line.split()[1] for line in head.splitlines() if line.startswith(("ROOT", "JOINT"))]
+    for side in ("Left", "Right"):
+        joint = f"JOINT {side}Hip\n"
+        head = head.replace(
+            joint,
+            f"JOINT {side[0]}{helper}\n{{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n"
+            f"{{\nOFFSET 0 0 0\n}}\n}}\n{joint}",
+        )
+    rows = numbers.splitlines()
+    for side in ("Right", "Left"):
+        before = sum(widths[: names.index(f"{side}Hip")])
+        rows[2:] = [" ".join([*(w := row.split())[:before], "0 0 0", *w[before:]]) for row in rows[2:]]
+    (rig,) = read_bvh("\n".join([head + "MOTION", *rows]).encode())
+    assert [rig.joint_names[rig.parts.joints[f"{side}_hip"]] for side in ("left", "right")] == ["LeftHip", "RightHip"]
+    np.testing.assert_allclose(retarget(rig).positions, retarget(read_bvh(text.encode())[0]).positions, atol=1e-3)
+
+
 @pytest.mark.parametrize("unit", [1.0, 100.0, 1000.0, 39.37])
 def test_units_are_found(unit):
     rig = read_bvh(bvh_text(ROTATIONS, ROOT, unit=unit).encode())[0]

@@ -30,6 +30,14 @@ def test_frames_without_a_body_are_interpolated_and_ghosts_left_out(bodies: np.n
     np.testing.assert_allclose(alone.positions, bodies[0], atol=1e-5)
 
 
+def test_a_joint_that_is_nan_for_a_frame_is_interpolated(bodies: np.ndarray) -> None:
+    broken = bodies.copy()
+    broken[0, 4, 7, 1] = np.nan
+    duet = as_stored(skeleton_text(broken).encode(), name="x.skeleton")
+    assert isinstance(duet, Duet)
+    np.testing.assert_allclose(duet.a.positions[4, 7], (bodies[0, 3, 7] + bodies[0, 5, 7]) / 2, atol=1e-5)
+
+
 def test_a_body_that_is_found_again_is_the_same_one_and_a_gap_is_said() -> None:
     body = np.random.default_rng(3).normal(scale=0.3, size=(1, 60, 25, 3)).round(4)
     three = np.concatenate([body, body + 1.0, body + 1.0])

@@ -20,8 +20,8 @@ from motion.rigs import RigMotion
 from tests.motion.bodies import marching
 
 from .arrays import npy, npz
-from .characters import packed
-from .written import c3d_bytes, keypoints, trc_text
+from .characters import glb_motion, packed
+from .written import c3d_bytes, keypoints, skeleton_text, trc_text, zipped
 
 MEGABYTE = 2**20
 FULL = MAX_BYTES - 1000
@@ -134,6 +134,10 @@ VALID: dict[str, Callable[[], bytes]] = {
     "full.txt": lambda: b"\n".join([b"1," + b",".join([b"0.4", b"0.5", b"0.6"] * 30)] * 9_000),
     "full.npy": lambda: npy(np.linspace(0, 1, 2 * 36_000 * 22 * 3, dtype=np.float32).reshape(2, -1, 22, 3)),
     "full.npz": lambda: _turned(36_000),
+    "full.bvh": lambda: moving(MAX_BYTES // 199, "0"),
+    "full.skeleton": lambda: _seen(8_000),
+    "full.glb": lambda: _animated(18_000),
+    "full.zip": lambda: zipped({f"{i}.npy": npy(np.zeros((18_000, 492), np.float32)) for i in (1, 2)}),
 }
 
 
@@ -141,6 +145,17 @@ def _turned(frames: int) -> bytes:
     """SMPL's parameters as matrices of a byte a number."""
     turns = np.tile(np.eye(3, dtype=np.int8), (frames, 60, 1, 1))
     return npz(poses=turns, trans=np.zeros((frames, 3), np.float32))
+
+
+def _seen(frames: int) -> bytes:
+    """Two people of Kinect's 25 joints in short numbers."""
+    return skeleton_text(np.full((2, frames, 25, 3), 0.5)).encode()
+
+
+def _animated(frames: int) -> bytes:
+    """A character that moves for ten minutes."""
+    positions, rotations = marching(frames)
+    return glb_motion(rotations, positions[:, 0], skinned=False)
 
 
 @pytest.mark.slow

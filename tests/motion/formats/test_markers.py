@@ -25,9 +25,11 @@ def error_of(found: Clip) -> float:
     return float(np.linalg.norm(found.positions[:, theirs] - POSITIONS[:, ours], axis=-1).max())
 
 
+@pytest.mark.parametrize("separator", ["\t", ","])
 @pytest.mark.parametrize(("unit", "scale"), [("m", 1.0), ("mm", 1000.0), ("cm", 100.0)])
-def test_key_points_of_a_trc_are_the_joints(unit: str, scale: float) -> None:
-    clip = as_stored(trc_text(keypoints(), unit=unit, scale=scale).encode(), name="walk.trc")
+def test_key_points_of_a_trc_are_the_joints(unit: str, scale: float, separator: str) -> None:
+    text = trc_text(keypoints(), unit=unit, scale=scale).replace("\t", separator)
+    clip = as_stored(text.encode(), name="walk.trc")
     assert isinstance(clip, Clip) and clip.fps == 30 and clip.notes == ()
     assert error_of(clip) < 1e-4
 

@@ -12,11 +12,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion import SKELETONS, SMPL22, Clip, Duet, InputError, formats
+from motion.formats.bvh import read_bvh
+from motion.formats.npz import _SOMA
 from motion.formats.smpl import PELVIS
 from motion.representation import decode_positions, encode_person
 from motion.transforms import turn
 from tests.motion.bodies import as_stored, marching
 from tests.motion.formats.arrays import npy, npz
+
+from .rigs import RIGS, bvh_text
 
 A, ROTATIONS = marching(20)
 B = turn(marching(20, seed=1)[0], np.pi) + np.array([0, 0, 2.0])
@@ -56,6 +60,21 @@ def test_npy_forms():
     raw = np.random.default_rng(0).normal(size=(5, 492))
     floor = raw[:, 2:66:3].min()
     np.testing.assert_allclose(formats.read(npy(raw), name="a.npy").positions[:, 0, 1], raw[:, 2] - floor, atol=1e-6)
+
+
+@pytest.mark.parametrize("joints", _SOMA)
+def test_kimodos_joints_are_put_on_smpls(joints):
+    positions = np.zeros((20, joints, 3), np.float32)
+    positions[:, _SOMA[joints]] = A
+    clip = formats.read(npz(posed_joints=positions, fps=np.float64(30)), name="kimodo.npz")
+    assert np.linalg.norm(clip.positions - A, axis=-1).mean() < 0.05
+
+
+def test_positions_with_the_names_and_parents_of_any_rig_are_read():
+    (rig,) = read_bvh(bvh_text(ROTATIONS, A[:, 0], RIGS["rokoko"]).encode())
+    named = {"joint_names": np.array(rig.joint_names), "parents": np.array(rig.parents)}
+    clip = formats.read(npz(positions=rig.positions, fps=np.float64(30), **named), name="x.npz")
+    assert np.linalg.norm(clip.positions - A, axis=-1).mean() < 0.05
 
 
 def test_amass_is_turned_upright_and_put_on_the_floor():

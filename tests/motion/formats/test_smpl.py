@@ -80,6 +80,17 @@ def test_dictionaries_of_estimators_are_read_whichever_axis_of_the_camera_is_up(
     assert import_motion(npz(**found), name="wild.npz").up == "-y"
 
 
+def test_amass_in_a_world_with_y_up_stands() -> None:
+    arrays = {
+        "poses": np.zeros((20, 156)),
+        "trans": np.tile([0.0, 1.16, 0.0], (20, 1)),
+        "mocap_framerate": np.array(60.0),
+    }
+    found = import_motion(npz(**arrays), name="x.npz")
+    assert found.up == "y" and any("not Z as is usual" in note for note in found.notes)
+    assert found.people[0].positions[0, SMPL22.index("head"), 1] > 1.4
+
+
 def test_humanml3d_gives_the_joints_again() -> None:
     angle = np.linspace(0, 2.0, len(POSITIONS))
     moved = np.einsum("tij,tkj->tki", heading_matrix(angle), POSITIONS - POSITIONS[:, :1] * [1, 0, 1])

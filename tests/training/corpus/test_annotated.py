@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,10 @@ import pytest
 
 from motion.transforms import canonicalize
 from tests.motion.bodies import marching
+from tests.training.trainers.runs import SETTINGS, SIZES, flags
 from training import prepare
 from training.corpus import annotated
+from training.trainers import intergen
 
 POSITIONS, _ = marching(60)
 OTHER = POSITIONS * [-1, 1, -1] + np.array([0.0, 0.0, 1.5])
@@ -47,6 +50,14 @@ def test_a_motion_keeps_its_people_and_its_sentences(corpus: Path) -> None:
     assert row["split"] == "train" and row["sources"] == ["interhuman/7"] and row["frames"] == 60
     wanted = canonicalize(np.stack([POSITIONS, OTHER]))
     np.testing.assert_allclose(np.asarray(motions).swapaxes(0, 1), wanted, atol=0.002)
+
+
+def test_the_trainer_of_our_own_corpus_runs_on_it(corpus: Path, tmp_path: Path) -> None:
+    scenes = tmp_path / "scenes.safetensors"
+    assert prepare.main(["--corpus", str(corpus), "--out", str(scenes)]) == 0
+    sizes = flags(replace(SETTINGS, batch=1, steps=10), *SIZES, "steps")
+    assert intergen.main(["--scenes", str(scenes), "--out", str(tmp_path / "run"), *sizes]) == 0
+    assert '"step": 10' in (tmp_path / "run" / "log.jsonl").read_text()
 
 
 def test_lists_give_the_split_and_what_is_damaged_is_left_out(

@@ -19,6 +19,7 @@ from training.trainers.intergen_data import Settings
 SETTINGS = Settings(
     latent_dim=32, ff_size=32, num_layers=2, num_heads=2, cond_dim=64, batch=4, steps=6, warmup=2, dropout=0.1
 )
+SIZES = ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup", "dropout")
 HANDS_MEET = [{"a": "right_wrist", "b": "right_wrist", "start": 10, "end": 20}]
 
 

@@ -14,14 +14,14 @@ from safetensors.torch import load_file
 from models.intergen.compact import CompactInterGen
 from models.weights_io import load_network
 from motion import InputError
-from tests.training.trainers.runs import SETTINGS, begin, flags, prepared, resumed, write_corpus
+from tests.training.trainers.runs import SETTINGS, SIZES, begin, flags, prepared, resumed, write_corpus
 from training import prepare
 from training.core import checkpoint
 from training.trainers import intergen
 from webdemo.inference import GenerateRequest, Result
 from webdemo.inference.engine import Engine
 
-SIZES = flags(SETTINGS, "latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup", "dropout")
+SIZED = flags(SETTINGS, *SIZES)
 
 
 @pytest.fixture(scope="module")
@@ -33,12 +33,12 @@ def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def trained(scenes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a run of six steps, made by the command."""
     out = tmp_path_factory.mktemp("run")
-    assert intergen.main(["--scenes", str(scenes), "--out", str(out), *SIZES, "--steps", "6"]) == 0
+    assert intergen.main(["--scenes", str(scenes), "--out", str(out), *SIZED, "--steps", "6"]) == 0
     return out
 
 
 def export(scenes: Path, run: Path, out: Path) -> None:
-    words = ["--scenes", str(scenes), "--out", str(run), *SIZES, "--steps", "6", "--export", str(out)]
+    words = ["--scenes", str(scenes), "--out", str(run), *SIZED, "--steps", "6", "--export", str(out)]
     assert intergen.main(words) == 0
 
 
@@ -113,7 +113,7 @@ def test_bad_corpus_is_refused_in_one_line(
 def test_a_full_disk_leaves_the_last_checkpoint(
     scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["--scenes", str(scenes), "--out", str(tmp_path), *SIZES, "--steps", "4"]
+    words = ["--scenes", str(scenes), "--out", str(tmp_path), *SIZED, "--steps", "4"]
     assert intergen.main([*words, "--minutes", "0"]) == 0
     before = (tmp_path / "last.safetensors").read_bytes()
 
