@@ -171,15 +171,16 @@ class GenerateTab(JobTab):
 
     def _settings(self) -> None:
         self.seconds = slider("generate.seconds", SECONDS, GenerateRequest.seconds, 0.5, elem_id="seconds")
-        self.sampling.build(self._more)
+        self.sampling.build(self._who)
 
-    def _more(self) -> None:
-        """A switch, by which words become paths, or not."""
+    def _who(self) -> None:
+        """A switch that gives the whole motion to the network."""
         self.planned = gr.Radio(
             [(say("generate.planned"), True), (say("generate.alone"), False)],
             value=GenerateRequest.planned,
             label=say("generate.who"),
-            info=say("generate.planned_info"),
+            show_label=False,
+            container=False,
             elem_id="planned",
             elem_classes="pd-way",
         )

@@ -37,8 +37,8 @@ class Sampling:
     def __init__(self, prefix: str, *, sentences: bool = False) -> None:
         self.prefix, self.sentences = prefix, sentences
 
-    def build(self, more: Callable[[], None] = lambda: None) -> None:
-        """Lays out the form; ``more`` lays out more at the end of *More*."""
+    def build(self, beside: Callable[[], None] = lambda: None) -> None:
+        """Lays out the form; ``beside`` lays out more under the sliders."""
         self.pace = gr.Radio(
             [(say("sampling.fast"), FAST), (say("sampling.faithful"), FAITHFUL)],
             value=FAST,
@@ -55,13 +55,13 @@ class Sampling:
         if self.sentences:
             usual_plan = GenerateRequest.strictness
             self.strictness = self._slider("sampling.plan", STRICTNESS, usual_plan, 0.05)
+        beside()
         self.laid = gr.HTML(elem_id=f"{self.prefix}laid")
         with gr.Accordion(say("sampling.more"), open=False, elem_id=f"{self.prefix}more", elem_classes="pd-advanced"):
             self.samples = self._slider("sampling.samples", SAMPLES, usual.samples)
             self.seed = seed_field(self.prefix)
             if self.sentences:
                 self.tries = self._slider("sampling.tries", TRIES, usual.tries)
-            more()
 
     def _slider(self, key: str, bounds: tuple[float, float], value: float, step: float = 1) -> gr.Slider:
         return slider(key, bounds, value, step, elem_id=self.prefix + key.split(".")[1])
