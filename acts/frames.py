@@ -11,7 +11,8 @@ A frame is a subject, the lemmas of its verb, and what must stand beside it:
 - any other word: a particle, an adverb, a complement, or the object's noun: ``sit down``, ``shake hand``; of a part of
   the body in the plural, both: ``put arms around {b}``.
 
-``w|v`` are alternatives and ``w?`` may be missing. A frame fits an event if all of its elements are there; other
+``w|v`` are alternatives, and ``w?`` may be missing. In a lexicon, ``walk+`` and ``run+`` stand for all of
+:data:`FAMILIES`. A frame fits an event if all of its elements are there; other
 arguments count against it, and an object that no element asks for rules it out.
 """
 
@@ -33,6 +34,11 @@ PREPOSITIONS = frozenset(_PREPOSITIONS.split())
 _DIRECTIONS = frozenset(("across", "along", "around", "back", "by", "in", "out", "over", "past", "up"))
 """Particles that only say where somebody goes; "away", "off" and "down" say more."""
 _PARTICLES = PREPOSITIONS | {"back"}
+FAMILIES = {
+    "walk+": "walk|go|come|step|stroll|march|wander|stride|saunter|amble|trot|head|move|hurry|rush|drift",
+    "run+": "run|sprint|dash|race|bolt|charge|dart|jog",
+}
+"""Verbs that an entry need not list."""
 _SLOTS = frozenset(("a", "a+b", "b", "each", "self", "thing", "part", "place"))
 
 

@@ -17,12 +17,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from motion import InputError
 from motion.things import FIXTURES
 
-from .frames import Frame
+from .frames import FAMILIES, Frame
 from .plan import Act, problem
 from .shapes import Posture, Shape
 
@@ -100,6 +100,14 @@ class Entry(BaseModel):
     reads: Annotated[tuple[Sentence, ...], Field(min_length=1)]
     ignores: tuple[Sentence, ...] = ()
     group: str = ""
+
+    @field_validator("frames")
+    @classmethod
+    def _spell_out(cls, frames: tuple[str, ...]) -> tuple[str, ...]:
+        """The frames with the verbs that a family stands for."""
+        for family, verbs in FAMILIES.items():
+            frames = tuple(frame.replace(family, verbs) for frame in frames)
+        return frames
 
     @model_validator(mode="after")
     def _check(self) -> Entry:
