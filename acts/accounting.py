@@ -17,7 +17,7 @@ from motion import InputError
 
 from .captions import VERB, caption_of, gerund, past, singular, usual_limb, with_thing
 from .lexicon import Entry, Lexicon, kind_of, lexicon
-from .plan import ON_TIPTOE, Act, Plan, merged
+from .plan import GAITS, ON_TIPTOE, Act, Plan, merged
 from .reading import wordnet
 from .reading.parses import Parse, parses
 from .reading.people import A_NAME, ANYONE, B_NAME
@@ -304,13 +304,14 @@ def _is_said(token: Token, act: Act, entry: Entry, plan: Plan, parsed: Parse) ->
         sided = act.side is not None and family in closed("limbs") and any(c.lower_ == act.side for c in token.children)
         handles = token.head.lower_ == "with" and any(isinstance(s, Touch | Gesture | Strike) for s in entry.stage)
         by_hand = handles and lemma == usual_limb(caption)  # "covers his eyes with his hands"
-        return sided or by_hand or (act.part is not None and family == words.part(act.part))
+        on_fours = lemma in ("hand", "knee") and "crawls" in act.manner
+        return sided or by_hand or on_fours or (act.part is not None and family == words.part(act.part))
     hurries = act.speed != 1.0 or any(isinstance(shape, Go) and shape.speed > 2.0 for shape in entry.stage)
     paced = hurries and words.gaits.get(lemma, 0.0) > _SLOWEST_WALK
     if (
         paced
         or (text in words.speeds and act.speed != 1.0)
-        or (lemma in closed("on tiptoe") and ON_TIPTOE in act.manner)
+        or any(lemma in closed(gait) and gait in act.manner for gait in (ON_TIPTOE, *GAITS))
     ):
         return True
     if (way is not None and way == act.direction) or (text == "both" and act.side == "both"):

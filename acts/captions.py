@@ -11,9 +11,9 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from .frames import Frame
+from .frames import FAMILIES, Frame
 from .lexicon import Entry, Lexicon, kind_of, lexicon
-from .plan import Act, Plan, other_of
+from .plan import GAITS, Act, Plan, other_of
 from .reading.vocabulary import closed, vocabulary
 
 VERB = re.compile(r"\[([a-z-]+)\]")
@@ -63,11 +63,21 @@ def plural(part: str) -> str:
     return {"foot": "feet"}.get(part, f"{part}s")
 
 
+def paced(act: Act, caption: str) -> str:
+    """A caption of somebody who goes, with the verb of their gait: "[limp] up to {b}"."""
+    verb, first = next((GAITS[manner] for manner in act.manner if manner in GAITS), ""), VERB.search(caption)
+    if not verb or first is None:
+        return caption
+    if first[1] not in FAMILIES["walk+"].split("|"):
+        return f"{caption} {gerund(verb)}"
+    return caption.replace(first[0], f"[{verb}]", 1)
+
+
 def worded(act: Act, caption: str) -> str:
     """An act in the words of a caption, without a full stop: "person A pats person B on the back twice"."""
     both = len(act.agents) == 2
     other = act.patient or other_of(act.agents[0])
-    caption = caption.replace("{a+b}", "{a}")
+    caption = paced(act, caption.replace("{a+b}", "{a}"))
     caption = caption if act.part else caption.replace(" on the {part}", "").replace("'s {part}", "")
     trunk = vocabulary().part(act.part or "") in closed("trunk")  # which is touched, and touches nothing
     limb = ("" if trunk else act.part) or usual_limb(caption)
@@ -91,7 +101,7 @@ def worded(act: Act, caption: str) -> str:
     text += _by_hand(act, caption)
     if act.times is not None and act.times > 1:
         text += f" {_COUNTS.get(act.times, f'{act.times} times')}"
-    for adverb in act.manner[:1]:
+    for adverb in [each for each in act.manner if each not in GAITS][:1]:
         if adverb not in ("then", "finally") and not text.endswith(adverb):
             text += f" {adverb}"
     return text
@@ -225,7 +235,7 @@ def short(act: Act, entry: Entry | None) -> str:
         turns = side == act.direction or "[turn]" in phrase
         limb = by_limb(act, phrase).replace(" the ", " ")
         text += limb if not turns else f" to the {side}" if side in ("left", "right") else f" {side}"
-    for adverb in act.manner[:1]:
+    for adverb in [each for each in act.manner if each not in GAITS][:1]:
         if adverb not in ("then", "finally", "simultaneously") and f" {adverb} " not in f" {text} ":
             text += f" {adverb}"
     return f"{text} ×{act.times}" if act.times is not None and act.times > 1 else text
@@ -236,11 +246,11 @@ def _phrase(act: Act, entry: Entry | None, both: str) -> str:
     name = act.act.split("-")
     if entry is None:
         return " ".join(name)
-    named = f"[{name[0]}] {' '.join(name[1:])}".strip().replace(" thing", f" {act.thing or 'something'}")
+    named = paced(act, f"[{name[0]}] {' '.join(name[1:])}".strip()).replace(" thing", f" {act.thing or 'something'}")
     named = _OTHER.sub(f" {both or 'the other'}", named).removesuffix(" person")
     if not entry.caption:
         return named
-    act, caption = with_thing(act, entry.chip or entry.caption[0])
+    act, caption = with_thing(act, paced(act, entry.chip or entry.caption[0]))
     verb = VERB.search(caption)
     other = verb is None or verb[1] != name[0] or caption.startswith("{b}")
     no_limb = "{limb}" in caption and not act.part

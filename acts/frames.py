@@ -11,8 +11,8 @@ A frame is a subject, the lemmas of its verb, and what must stand beside it:
 - any other word: a particle, an adverb, a complement, or the object's noun: ``sit down``, ``shake hand``; of a part of
   the body in the plural, both: ``put arms around {b}``.
 
-``w|v`` are alternatives, and ``w?`` may be missing. In a lexicon, ``walk+`` and ``run+`` stand for all of
-:data:`FAMILIES`. A frame fits an event if all of its elements are there; other
+``w|v`` are alternatives, and ``w?`` may be missing. In a lexicon, ``walk+``, ``run+`` and ``gait+`` stand
+for all of :data:`FAMILIES`. A frame fits an event if all of its elements are there; other
 arguments count against it, and an object that no element asks for rules it out.
 """
 
@@ -35,7 +35,8 @@ _DIRECTIONS = frozenset(("across", "along", "around", "back", "by", "in", "out",
 """Particles that only say where somebody goes; "away", "off" and "down" say more."""
 _PARTICLES = PREPOSITIONS | {"back"}
 FAMILIES = {
-    "walk+": "walk|go|come|step|stroll|march|wander|stride|saunter|amble|trot|head|move|hurry|rush|drift",
+    "walk+": "walk|go|come|step|stroll|march|wander|stride|saunter|amble|trot|head|move|hurry|rush|drift|gait+",
+    "gait+": "limp|hobble|skip|prance|gallop|crawl|stagger|totter|lurch|reel|weave|teeter",
     "run+": "run|sprint|dash|race|bolt|charge|dart|jog",
 }
 """Verbs that an entry need not list."""

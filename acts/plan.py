@@ -23,6 +23,8 @@ MOST_ACTS = 60
 FROM_BEHIND = "from behind"
 """Manner of an act that is done to the other from behind them."""
 ON_TIPTOE = "on tiptoe"
+GAITS = {"limps": "limp", "skips": "skip", "crawls": "crawl", "staggers": "stagger"}
+"""Manners of going, and the verb of each."""
 """Manner of who goes somewhere without a sound."""
 
 

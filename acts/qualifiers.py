@@ -13,13 +13,19 @@ from motion.metrics.sentences.touches import BODY, has_sides
 from .accounting import said_words, shown_caption
 from .captions import plural, usual_limb
 from .lexicon import Entry
-from .plan import FROM_BEHIND, ON_TIPTOE, Act
+from .plan import FROM_BEHIND, GAITS, ON_TIPTOE, Act
 from .reading.vocabulary import closed, vocabulary
 from .shapes import Figure, Gesture, Go, Touch, Turn
 
 _BOTH = re.compile(r"\bboth (?:\w+ )?(hands|arms|palms|fists|feet|legs|knees|elbows|shoulders|cheeks)\b", re.IGNORECASE)
 
 _OF_BOTH = "claps palms_strike both_hands_on hands_high hands_ahead hands_on_hips arms_wide arms_crossed arms_down"
+_GAITS = {
+    "limps": "happens(limps({who}))",
+    "skips": "happens(both(walks({who}, 0.6), hops({who}, 0.08)))",
+    "crawls": "happens(both(low({who}), walks({who}, 0.4, 0.12)))",
+}
+"""Rules of gaits."""
 _OF_THE_CLOCK = {"clockwise": "right", "counterclockwise": "left"}
 """Directions as seen from above, and those that a rule asks for."""
 _TWO_HANDED = frozenset((*_OF_BOTH.split(), "holds_in_front"))
@@ -77,7 +83,9 @@ def qualifiers(
         yield "from where", f"happens(both({mask}, behind({who})))" if mask else ""
     if ON_TIPTOE in act.manner:
         yield "in which manner", f"happens(both(heels_up({who}), walks({who}, 0.3, 0.1)), 0.5)"
-    told = {FROM_BEHIND, ON_TIPTOE, *closed("fillers"), *vocabulary().speeds}
+    for gait in GAITS.keys() & act.manner:
+        yield "in which manner", _GAITS.get(gait, "").format(who=who)
+    told = {FROM_BEHIND, ON_TIPTOE, *GAITS, *closed("fillers"), *vocabulary().speeds}
     if not told.issuperset(act.manner):
         yield "in which manner", ""
     own = act.part_of in act.agents and act.part == usual_limb(caption)  # who waves with a hand

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from acts.frames import Event, Frame, Match, Ref
 from acts.lexicon import SEATS, Entry, Lexicon, is_fixture, kind_of, lexicon, nouns_in
-from acts.plan import MOST_ACTS, ON_TIPTOE, Act, Plan, Relation, Span, Unread, merged, other_of
+from acts.plan import GAITS, MOST_ACTS, ON_TIPTOE, Act, Plan, Relation, Span, Unread, merged, other_of
 from acts.shapes import Go, Touch
 from motion import InputError
 
@@ -314,6 +314,8 @@ class _Planner:
             speed *= vocabulary().gaits.get(event.lemma, 1.0)
         toes = any(word == "on" and ref.lemma in closed("on tiptoe") for word, ref in event.prepositions)
         toes = toes or (event.lemma in closed("on tiptoe") and not any(shape.gait for shape in goes))
+        captions = " ".join(entry.caption)
+        gaits = [gait for gait, verb in GAITS.items() if goes and event.lemma in closed(gait) and verb not in captions]
         patient = match.patient
         floored = any(ref.lemma in closed("floors") for word, ref in event.prepositions if word != "from")
         upwards = entry.thing == "throws" and (event.direction == "up" or floored)  # to nobody
@@ -358,7 +360,7 @@ class _Planner:
             seconds=event.seconds,
             side=side if side in ("left", "right", "both") else None,
             times=None if event.distance and (toes or not name.startswith("step")) else event.times,
-            manner=(*([ON_TIPTOE] if goes and toes else ()), *event.adverbs[:7]),
+            manner=(*([ON_TIPTOE] if goes and toes else ()), *gaits, *event.adverbs[:7]),
             speed=min(max(speed, 0.2), 3.0),
             direction="down" if entry.thing == "throws" and floored else None if answers or apart else event.direction,
             distance=event.distance,

@@ -94,9 +94,9 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
         gap = min(gap, max(0.55 * seconds * ways["past"].speed, 1.2))
     held = (ways[way] for way in ("hold", "spar", "around") if way in ways)
     gap = next((move.near + move.metres for move in held if move.near), gap)
-    for way in ("to", "behind", "beside"):
-        if way in ways:
-            gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0))
+    for move in (ways[way] for way in ("to", "behind", "beside") if way in ways):
+        longest = 3.6 if move.speed < 2 else 5.0
+        gap = float(np.clip(max(CLOSE, 1.3 * move.near) + 0.6 * seconds * move.speed, 1.8, longest))
     if "ahead" in ways:
         gap = max(gap, min(CLOSE + ways["ahead"].metres, 5.0))
     averted = ("averted",) if "around" in ways else ("averted", "face")

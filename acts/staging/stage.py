@@ -15,7 +15,7 @@ from itertools import pairwise
 from acts import shapes
 from acts.captions import of_each
 from acts.lexicon import Entry, Lexicon, is_fixture, kind_of, lexicon
-from acts.plan import FROM_BEHIND, ON_TIPTOE, Act, beats, other_of
+from acts.plan import FROM_BEHIND, GAITS, ON_TIPTOE, Act, beats, other_of
 from motion.skeleton import OTHER_SIDE
 
 from .act_kinds import (
@@ -57,6 +57,9 @@ _MOST = 5
 """Times that something is done in one beat, at most."""
 _TO_THING = 0.3
 """Of a whole turn: by how much somebody turns from the other to point at a thing."""
+_LONG = {1: 1.1, 2: 1.6}
+"""Metres from the other at which somebody who crawls stays, and two who do."""
+_GAITS = {ON_TIPTOE, *GAITS} - {"staggers"}
 _RIGHTWARDS = ("right", "clockwise")
 """Directions to the right, and those of a turn to the right."""
 _LEGS = frozenset(("dance", "fight", "ways", "play"))
@@ -295,6 +298,7 @@ class _Stage:
 
     def _go(self, act: Act, shape: shapes.Go, who: str) -> Move:
         way: Way = shape.way
+        near = _LONG[len(act.agents)] if way == "to" and "crawls" in act.manner else shape.near
         if act.direction == "back" and way in ("ahead", "past"):
             way = "back"  # "glides backwards"
         return Move(
@@ -306,9 +310,9 @@ class _Stage:
             linked=shape.linked,
             late=who in self.reacting or (way != "after" and self._late(act)),
             metres=act.distance if act.distance is not None and way in ("ahead", "back") else shape.metres,
-            near=act.distance if act.distance is not None and way == "around" else shape.near,
+            near=act.distance if act.distance is not None and way == "around" else near,
             backwards=shape.backwards or (way == "away" and act.direction == "back"),
-            gait=shape.gait or (ON_TIPTOE if ON_TIPTOE in act.manner else ""),
+            gait=shape.gait or next((name for name in act.manner if name in _GAITS), ""),
             rightwards=act.direction in _RIGHTWARDS,
         )
 

@@ -173,7 +173,7 @@ from tests.acts.reading.reading import told
         ("Tom pushes Leah.", [("push", "a", "b")]),
         ("A is kneeling.", [("kneel", "a", None)]),
         # together, and not past each other
-        ("Two men stagger along the road.", [("stagger-together", "ab", None)]),
+        ("Two men stagger along the road.", [("walk-together", "ab", None)]),
         ("A nurse helps a man get up and walks with him.", [("help-up", "a", "b"), ("walk-together", "a", "b")]),
         ("A nurse walks with her patient arm in arm.", [("walk-hand-in-hand", "a", "b")]),
         ("She opens her arms and he runs into them.", [("arms-out", "a", None), ("hug", "b", "a")]),
