@@ -132,6 +132,12 @@ def test_blows_are_struck_with_the_hands_that_the_words_name() -> None:
     assert [(blow.person, blow.side) for blow in blows(struck, 150, first=0)] == [(0, "left"), (0, "left")]
 
 
+@pytest.mark.parametrize("words", ["A punches B.", "A kicks B."])
+def test_who_is_hit_bends_if_no_words_say_what_they_do(words: str) -> None:
+    assert [limb.figure for limb in score(words).limbs["b"]] == ["leans"]
+    assert "b" not in score(f"{words[:-1]} and B waves.").limbs
+
+
 @pytest.mark.parametrize("words", ["A punches B and B falls down.", "A kicks B and B falls down."])
 def test_who_is_struck_falls_afterwards(words: str) -> None:
     (beat,) = beats_of(read(words))
