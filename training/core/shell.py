@@ -23,6 +23,10 @@ Settings = TypeVar("Settings")
 
 _FOLDER, _NEEDED = {"type": Path}, {"type": Path, "required": True}
 OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
+    "blocks": (
+        "--blocks",
+        {"type": int, "nargs": "+", "default": (), "help": "those of the teacher that the network has (all)"},
+    ),
     "compile": ("--compile", {"action": "store_true", "help": "compile the network (needs a C++ compiler)"}),
     "corpus": ("--data", _NEEDED | {"help": "folder of the corpus"}),
     "cache": ("--cache", _FOLDER | {"help": "folder of the fitted pairs; --data by default"}),
@@ -41,6 +45,7 @@ OPTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     ),
     "steps": ("--steps", {"type": int, "default": 25, "help": "DDIM steps (25)"}),
     "table": ("--table", _FOLDER | {"help": "Markdown file for the table, which is printed too"}),
+    "teacher": ("--teacher", _FOLDER | {"help": "a shipped folder to begin with and to learn from"}),
     "threads": ("--threads", {"type": int, "help": "of torch on the CPU (as many as there are cores)"}),
     "weights": ("--weights", _FOLDER | {"help": "folder of all weights"}),
     "words": (

@@ -28,6 +28,7 @@ class Shares:
         joints: the pelvis and one to four joints of a person for a while.
         places: where people are and how they face, of both or of one.
         more: of the samples in which something is given, how many have a second kind given.
+        drafted: with a draft, whatever else is given.
     """
 
     person: float = 0.08
@@ -36,8 +37,9 @@ class Shares:
     poses: float = 0.03
     path: float = 0.08
     joints: float = 0.01
-    places: float = 0.5
+    places: float = 0.35
     more: float = 0.35
+    drafted: float = 0.6
 
 
 class Draw:
@@ -173,16 +175,15 @@ def _kept(mask: Tensor, times: Tensor, joints: Iterable[int]) -> None:
 
 _DRAFTED = ((0.45, tuple(range(1, NUM_JOINTS))), (0.15, (*range(1, 16), 16, 17, 18, 19, 20, 21)), (0.1, _LEGS[1:]))
 """Joints of a draft with their shares; in the others one arm or both are drafted, with the trunk in two thirds."""
-NO_DRAFT = 0.25
-"""Share of the motions without a draft."""
 
 
-def drafted(control: Tensor, frames: list[int], layout: TokenLayout, generator: torch.Generator) -> Known:
+def drafted(control: Tensor, frames: list[int], layout: TokenLayout, share: float, generator: torch.Generator) -> Known:
     """Draws a draft of each motion of a batch: rough poses of some joints for a while, like those that a plan makes.
 
     Args:
         control: (B, 2, K, 70) true control points in metres.
         frames: real frames of each motion.
+        share: of the motions that have a draft.
 
     Returns:
         the draft as a known part; where there is none, nothing is known.
@@ -191,7 +192,7 @@ def drafted(control: Tensor, frames: list[int], layout: TokenLayout, generator: 
     basis = layout.basis(control.shape[2] // layout.knots_per_token)
     known = Known.nothing(len(basis), len(control))
     for i, count in enumerate(frames):
-        if draw.uniform() < NO_DRAFT:
+        if draw.uniform() >= share:
             continue
         rows = basis @ control[i]
         for person in range(2):

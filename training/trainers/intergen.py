@@ -9,14 +9,17 @@ from __future__ import annotations
 
 import argparse
 import copy
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
-from models.intergen.compact import CompactConfig, CompactInterGen, save_folder
+from models.intergen.compact import CompactConfig, CompactInterGen, load_captions, save_folder
 from models.known import Held, Hold, Known
 from models.weights_io import common, load_network
+from motion import InputError
 from training.core import checkpoint
 from training.core.loop import mixed_precision
 from training.core.shell import train
@@ -50,6 +53,16 @@ def condition(model: CompactInterGen, batch: Batch) -> Tensor:
     return text.view(size, 3, *rows.shape[1:]) * batch.read[:, :, None, None]
 
 
+def shallower(model: CompactInterGen, blocks: Sequence[int]) -> CompactInterGen:
+    """A copy of a network with some of its blocks; raises InputError where it has no such block."""
+    if not blocks or not set(blocks) <= set(range(model.config.num_layers)):
+        raise InputError(f"Blocks {list(blocks)} are not in the teacher, which has {model.config.num_layers}.")
+    result = copy.deepcopy(model)
+    result.config = replace(model.config, num_layers=len(blocks))
+    result.denoiser.blocks = nn.ModuleList(copy.deepcopy(model.denoiser.blocks[i]) for i in blocks)
+    return result
+
+
 class Trainer(DuetTrainer):
     """One training run, which resumes from its checkpoint.
 
@@ -57,6 +70,9 @@ class Trainer(DuetTrainer):
         init: whose weights and normaliser a new run begins with: a checkpoint of another run (its average),
             or a folder that was shipped.
         share: the run's own share in the weights that are exported; the rest is of those that it began with.
+        teacher: a shipped folder that a run begins with and also learns from: the difference from its predictions is
+            one more loss (Kim et al. 2024, "BK-SDM"). Its text side stays as it is.
+        blocks: those of the teacher that the network has.
         cache: where features of captions are kept, ``out`` by default; runs on the same scenes can share it.
         workers: processes that draw batches ahead; 0 draws each when it is needed.
     """
@@ -69,14 +85,22 @@ class Trainer(DuetTrainer):
         *,
         init: Path | None = None,
         share: float = 1.0,
+        teacher: Path | None = None,
+        blocks: Sequence[int] = (),
         device: str = "cpu",
         cache: Path | None = None,
         workers: int = 0,
     ) -> None:
         torch.manual_seed(settings.seed)
         self.begin(settings, out, Data(scenes, settings, cache or out, device), device, workers)
-        model, self.share = new_model(settings, self.data), share
-        if init is not None and init.is_dir():
+        model, self.share, self.teacher = new_model(settings, self.data), share, None
+        if teacher is not None:
+            self.teacher, folder = load_network(teacher, CompactInterGen)
+            self.bank = load_captions(folder)
+            model = shallower(self.teacher, blocks or range(self.teacher.config.num_layers))
+            model.denoiser.requires_grad_()
+            self.teacher.to(device)
+        elif init is not None and init.is_dir():
             without_touches(load_network(init, CompactInterGen)[0]).loaded(model)
         elif init is not None:
             checkpoint.restore_part(init, "ema", model)
@@ -104,7 +128,7 @@ class Trainer(DuetTrainer):
         """The drafts of a batch as the network sees them."""
         frames = batch.frame_mask.sum(1).int().tolist()
         layout = self.data.scenes.layout
-        draft = drafted(self.data.control(batch.x0), frames, layout, generator)
+        draft = drafted(self.data.control(batch.x0), frames, layout, self.settings.given.drafted, generator)
         return draft.features(layout, self.data.mean, self.data.std)
 
     def terms(self, drawn: Drawn, noise: Tensor) -> dict[str, Tensor]:
@@ -115,22 +139,30 @@ class Trainer(DuetTrainer):
             xt = hold(xt)
         known = None if hold is None else hold.features.to(xt)
         shown = self.model.shown(known, None if draft is None else draft.to(xt))
+        if self.teacher is not None:
+            self.model.conditioner.eval()
         with mixed_precision(self.device):
-            cond = condition(self.model, batch)
-            predicted = self.model.denoiser(xt, t, cond, batch.mask, shown)
-        predicted = predicted.float() if hold is None else hold(predicted.float())
-        return self.motion_terms(predicted, batch.x0, t, batch)
+            inputs = (xt, t, condition(self.model, batch), batch.mask, shown)
+            predicted = self.model.denoiser(*inputs).float()
+            with torch.no_grad():
+                wanted = None if self.teacher is None else self.teacher.denoiser(*inputs).float()
+        predicted = predicted if hold is None else hold(predicted)
+        terms = self.motion_terms(predicted, batch.x0, t, batch)
+        if wanted is None:
+            return terms
+        return terms | {"taught": self.simple(predicted, wanted if hold is None else hold(wanted), batch)}
 
     def export(self, folder: Path) -> None:
         """Writes the averaged network as it is shipped, with a reader of touches and a bank of training captions."""
         scenes, model = self.data.scenes, self.ema.cpu()
-        average(model, self.began, self.share)
-        model = with_touches(model, scenes)
-        save_folder(folder, model, caption_bank(scenes), card={"summary": SUMMARY}, trained_steps=self.step)
+        if self.teacher is None:
+            average(model, self.began, self.share)
+            model, self.bank = with_touches(model, scenes), caption_bank(scenes)
+        save_folder(folder, model, self.bank, card={"summary": SUMMARY}, trained_steps=self.step)
 
 
 def _begin(options: argparse.Namespace, settings: Settings) -> Trainer:
-    given = {name: getattr(options, name) for name in ("init", "share", "device", "workers")}
+    given = {name: getattr(options, name) for name in ("init", "share", "teacher", "blocks", "device", "workers")}
     trainer = Trainer(load(options.scenes), settings, options.out, **given)
     if options.compile:
         trainer.model.denoiser.compile(dynamic=True)
@@ -139,7 +171,7 @@ def _begin(options: argparse.Namespace, settings: Settings) -> Trainer:
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    names = ("scenes", "threads", "device", "workers", "init", "share", "export", "compile")
+    names = ("scenes", "threads", "device", "workers", "init", "share", "teacher", "blocks", "export", "compile")
     return train(argv, __doc__, Settings, _begin, *names, leave_out=("weights", "given"))
 
 

@@ -42,7 +42,7 @@ class Settings:
 
     latent_dim: int = 320
     ff_size: int = 1024
-    num_layers: int = 6
+    num_layers: int = 4
     num_heads: int = 5
     cond_dim: int = 256
     dropout: float = 0.0

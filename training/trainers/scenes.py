@@ -113,10 +113,14 @@ class DuetTrainer(SceneTrainer):
         )
         self.feature_weights = feature_weights(settings.root_weight, data.scenes.layout).to(device)
 
+    def simple(self, made: Tensor, wanted: Tensor, batch: Batch) -> Tensor:
+        """Eq. 8 on clean motions (B, tokens, 2F), with more weight on where people stand."""
+        weighted = [x.view(*x.shape[:2], 2, -1) * self.feature_weights for x in (made, wanted)]
+        return simple_loss(*weighted, batch.mask)
+
     def motion_terms(self, made: Tensor, wanted: Tensor, t: Tensor, batch: Batch) -> dict[str, Tensor]:
         """The losses of clean motions (B, tokens, 2F) against those that are wanted, weighted and damped."""
-        weighted = [x.view(*x.shape[:2], 2, -1) * self.feature_weights for x in (made, wanted)]
-        terms = {"simple": simple_loss(*weighted, batch.mask)}
+        terms = {"simple": self.simple(made, wanted, batch)}
         # Motions above the threshold have no part in the regularisers; one keeps the terms there, at zero.
         chosen = (t <= self.loss.t_bar).nonzero()[:, 0] if (t <= self.loss.t_bar).any() else t.argmin()[None]
         positions = [self.model.positions(x[chosen])[0].transpose(1, 2) for x in (made, wanted)]

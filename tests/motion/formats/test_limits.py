@@ -134,7 +134,7 @@ VALID: dict[str, Callable[[], bytes]] = {
     "full.txt": lambda: b"\n".join([b"1," + b",".join([b"0.4", b"0.5", b"0.6"] * 30)] * 9_000),
     "full.npy": lambda: npy(np.linspace(0, 1, 2 * 36_000 * 22 * 3, dtype=np.float32).reshape(2, -1, 22, 3)),
     "full.npz": lambda: _turned(36_000),
-    "full.bvh": lambda: moving(MAX_BYTES // 199, "0"),
+    "full.bvh": lambda: moving(MAX_BYTES // 200, "0"),
     "full.skeleton": lambda: _seen(8_000),
     "full.glb": lambda: _animated(18_000),
     "full.zip": lambda: zipped({f"{i}.npy": npy(np.zeros((18_000, 492), np.float32)) for i in (1, 2)}),

@@ -56,7 +56,7 @@ def prepared(folder: Path, **known: Any) -> Path:
     return out
 
 
-def begin(scenes: Path, out: Path, settings: Settings = SETTINGS, **options: Path) -> Trainer:
+def begin(scenes: Path, out: Path, settings: Settings = SETTINGS, **options: Any) -> Trainer:
     return Trainer(prepare.load(scenes), settings, out, **options)
 
 

@@ -5,12 +5,12 @@ from torch import Tensor
 
 from models.known import FLOOR, Known
 from models.motion_tokens import FEATURES, TokenLayout
-from training.trainers.given import NO_DRAFT, POSE, Shares, drafted, known_parts
+from training.trainers.given import POSE, Shares, drafted, known_parts
 
 LAYOUT = TokenLayout()
 TOKENS = 10
 FRAMES = LAYOUT.num_frames(TOKENS)
-NONE = Shares(*[0.0] * 8)
+NONE = Shares(*[0.0] * 9)
 
 
 def control(batch: int) -> Tensor:
@@ -94,13 +94,13 @@ def test_the_past_of_a_continued_scene_is_given_in_any_case() -> None:
 
 def test_a_draft_is_near_the_motion_and_not_the_motion() -> None:
     still = control(200) * 0.1
-    known = drafted(still, [FRAMES - 9] * 200, LAYOUT, torch.Generator().manual_seed(1))
+    known = drafted(still, [FRAMES - 9] * 200, LAYOUT, 0.75, torch.Generator().manual_seed(1))
     mask, rows = known.mask, LAYOUT.basis(TOKENS) @ still
     assert not mask[:, :, FRAMES - 9 :].any() and not mask[..., [0, 2]].any() and not mask[..., POSE:].any()
     assert not known.heading_mask.any()
     none = (~mask.flatten(1).any(1)).float().mean()
-    assert NO_DRAFT - 0.1 < none < NO_DRAFT + 0.25, "in some of the others neither person has one"
+    assert 0.15 < none < 0.5, "in some of the others neither person has one"
     off = (known.rows - rows)[mask].abs()
     assert 0.01 < off.median() < 0.15
-    again = drafted(still, [FRAMES - 9] * 200, LAYOUT, torch.Generator().manual_seed(1))
+    again = drafted(still, [FRAMES - 9] * 200, LAYOUT, 0.75, torch.Generator().manual_seed(1))
     assert torch.equal(again.mask, mask) and torch.equal(again.rows[mask], known.rows[mask])

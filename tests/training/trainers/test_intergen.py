@@ -78,6 +78,23 @@ def test_export_ships_what_the_engine_runs(scenes: Path, trained: Path, tmp_path
     assert json.loads((out / "captions.json").read_text()) == ["One person waves the left hand.", "They shake hands."]
 
 
+def test_a_network_of_fewer_blocks_learns_from_a_shipped_one(scenes: Path, trained: Path, tmp_path: Path) -> None:
+    export(scenes, trained, tmp_path / "teacher")
+    words = ["--scenes", str(scenes), *SIZED, "--steps", "6", "--teacher", str(tmp_path / "teacher"), "--blocks"]
+    assert intergen.main([*words, "1", "--out", str(tmp_path / "run"), "--export", str(tmp_path / "made")]) == 0
+    teacher, made = (load_network(tmp_path / name, CompactInterGen)[0] for name in ("teacher", "made"))
+    assert (teacher.config.num_layers, made.config.num_layers) == (2, 1)
+    text = made.conditioner.state_dict()
+    assert all(torch.equal(value, text[name]) for name, value in teacher.conditioner.state_dict().items())
+    assert intergen.main([*words, "2", "--out", str(tmp_path / "other")]) == 2
+    for blocks, alike in (((), True), ((1,), False)):
+        run = begin(scenes, tmp_path / f"{alike}", teacher=tmp_path / "teacher", blocks=blocks)
+        run.model.eval()
+        drawn = run.next_draw()
+        taught = run.terms(drawn, run.normal(drawn.batch.x0))["taught"]
+        assert (taught.item() < 1e-6) is alike
+
+
 def corpus_cut_short(folder: Path) -> None:
     write_corpus(folder)
     motions = np.load(folder / "motions.npy")

@@ -73,7 +73,7 @@ def with_beats(scenes: Path, out: Path) -> Path:
 
 def test_a_later_beat_is_learned_with_what_came_before_it_given(scenes: Path, tmp_path: Path) -> None:
     path = with_beats(scenes, tmp_path / "beats.safetensors")
-    given = Shares(*[0.0] * 8)
+    given = Shares(*[0.0] * 9)
     trainer = begin(path, tmp_path, replace(SETTINGS, continued=0.5, cond_drop_prob=0.0, given=given))
     read, cut, data = [], 0, trainer.data
 

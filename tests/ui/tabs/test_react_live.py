@@ -94,5 +94,5 @@ def test_what_no_page_sends_is_refused_in_a_sentence(text: str | None, says: str
 
 def test_two_people_of_different_length_are_no_stream() -> None:
     actor, reactor = take_of(sent(PEOPLE)).actor, take_of(sent(PEOPLE[:, :40])).reactor
-    with pytest.raises(InputError, match="as many frames"):
+    with pytest.raises(InputError, match="the same number of frames"):
         LiveTake(model="agent", actor=actor, reactor=reactor)
