@@ -64,7 +64,7 @@ def plural(part: str) -> str:
 
 
 def paced(act: Act, caption: str) -> str:
-    """A caption of somebody who goes, with the verb of their gait: "[limp] up to {b}"."""
+    """A caption with the verb of the act's gait: "[limp] up to {b}"."""
     verb, first = next((GAITS[manner] for manner in act.manner if manner in GAITS), ""), VERB.search(caption)
     if not verb or first is None:
         return caption

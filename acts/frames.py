@@ -11,9 +11,9 @@ A frame is a subject, the lemmas of its verb, and what must stand beside it:
 - any other word: a particle, an adverb, a complement, or the object's noun: ``sit down``, ``shake hand``; of a part of
   the body in the plural, both: ``put arms around {b}``.
 
-``w|v`` are alternatives, and ``w?`` may be missing. In a lexicon, ``walk+``, ``run+`` and ``gait+`` stand
-for all of :data:`FAMILIES`. A frame fits an event if all of its elements are there; other
-arguments count against it, and an object that no element asks for rules it out.
+``w|v`` are alternatives, and ``w?`` may be missing. In a lexicon, ``walk+``, ``run+`` and ``gait+`` stand for all of
+:data:`FAMILIES`. A frame fits an event if all of its elements are there; other arguments count against it, and an
+object that no element asks for rules it out.
 """
 
 from __future__ import annotations

@@ -23,9 +23,9 @@ MOST_ACTS = 60
 FROM_BEHIND = "from behind"
 """Manner of an act that is done to the other from behind them."""
 ON_TIPTOE = "on tiptoe"
+"""The manner of going somewhere without a sound."""
 GAITS = {"limps": "limp", "skips": "skip", "crawls": "crawl", "staggers": "stagger"}
 """Manners of going, and the verb of each."""
-"""Manner of who goes somewhere without a sound."""
 
 
 def other_of(who: str | None) -> str:

@@ -308,7 +308,7 @@ def is_somebody(word: str) -> bool:
 
 
 def _meets_other(pronoun: Token) -> bool:
-    """True for who does something to one of the other sex, and did not act before: "a thief runs, she chases him"."""
+    """True for a person who acts on one of the other sex and did not act before: "a thief runs, she chases him"."""
     beside = [t for c in pronoun.head.children for t in (c, *c.children) if t.dep_ in ("dobj", "dative", "pobj")]
     other = any(PRONOUN_SEX.get(t.lower_, "") not in ("", PRONOUN_SEX[pronoun.lower_]) for t in beside)
     return pronoun.dep_ == "nsubj" and not pronoun.is_sent_start and other

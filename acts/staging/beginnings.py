@@ -261,7 +261,7 @@ PACES = (0.88, 1.15)
 APART = (0.9, 1.25)
 """Factors of the metres between two who begin without touching."""
 OPEN = 0.3
-"""Radians by which somebody who begins may be turned away from the other, to either side."""
+"""Radians by which a person may be turned away from the other at the beginning, to either side."""
 _SIDED = (shapes.Gesture, shapes.Touch, shapes.Strike)
 _SIDES = ("side", "sides", "hands")
 """Names of their fields for it, which may say "both"."""

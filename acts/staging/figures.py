@@ -58,7 +58,7 @@ SHORTEST = 20
 _SEEN = 6
 """Frames between two poses of a figure that are looked at for the room that it needs."""
 _DEEP = 0.08
-"""Metres by which the pelvis of somebody who is down may rise as a figure begins."""
+"""Metres by which the pelvis may rise as a person who is down begins a figure."""
 _HOLDS, _WAITS = 0.5, {"in": 0.2}
 """Seconds for which a limb is held, over and over, and the row of what comes before it and after it."""
 LIMBS = frozenset(FILE["limbs"])
@@ -177,7 +177,7 @@ def _mirrored(rows: Array) -> Array:
 
 
 def figure_parts(scores: Sequence[Score], person: int, beat: Stretch, last: Array | None, seed: int) -> list[Part]:
-    """The body of a person who does a figure, as far as it falls into a window; who is on the ground gets up before.
+    """The body of a person who does a figure, as far as it falls into a window; a person on the ground gets up first.
 
     Args:
         scores: of all beats.
@@ -243,9 +243,9 @@ def _figure(score: Score, person: int, beat: Stretch, first: int, seed: int) -> 
 
 
 def _rested(poses: Array, listed: Sequence[Figure], start: int, seed: int) -> Array:
-    """Figures (T, 22, 3), from a frame of the scene on, of somebody who stands by before them and after them.
+    """Figures (T, 22, 3) from a frame of the scene on, with the person standing by before and after them.
 
-    Arms, or all but the head, that they do not move are those of somebody who stands by; who reaches down keeps theirs.
+    Arms, or all but the head, stand by as well where no figure moves them; a person who reaches down keeps theirs.
     """
     moved = _moved(listed)
     if listed[0].figure in LIMBS and moved & _OF_ARMS:

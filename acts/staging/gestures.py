@@ -88,7 +88,7 @@ GESTURES: Mapping[str, Stroke] = {
 }
 """The gestures by their names in the lexicon."""
 _POINTS = 0.47
-"""Metres by which the wrist of somebody who points is nearer to the other: that of an arm that is nearly straight."""
+"""Metres from the shoulder to the wrist of a pointing arm, which is nearly straight."""
 
 
 def hands_of(gesture: Gesture) -> tuple[str, ...]:

@@ -40,7 +40,7 @@ _RESTS, _STAYS, _FACES = 15, 0.03, 0.2
 _LOW = ("crawls", "on the knees")
 """Gaits of people who are low."""
 _PLACED = 30
-"""Frames between two places of somebody whose poses are a draft."""
+"""Frames between two given places of a person whose poses are a draft."""
 
 
 @dataclass(frozen=True)

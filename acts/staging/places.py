@@ -157,7 +157,7 @@ EVENLY = 4
 EASE = 0.5
 """Seconds in which a walk gets up its speed, and slows down again."""
 EVERY = 30
-"""Frames between two given places of somebody who stays."""
+"""Frames between two given places of a person who stays."""
 STEP = math.pi / 3
 """Radians of a turn between two given headings."""
 

@@ -58,7 +58,7 @@ _MOST = 5
 _TO_THING = 0.3
 """Of a whole turn: by how much somebody turns from the other to point at a thing."""
 _LONG = {1: 1.1, 2: 1.6}
-"""Metres from the other at which somebody who crawls stays, and two who do."""
+"""Metres from the other at which one person who crawls stops, and at which two do."""
 _GAITS = {ON_TIPTOE, *GAITS} - {"staggers"}
 _RIGHTWARDS = ("right", "clockwise")
 """Directions to the right, and those of a turn to the right."""

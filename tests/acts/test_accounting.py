@@ -199,3 +199,18 @@ def test_a_long_note_names_fewer_of_each_kind() -> None:
     row = {"act": "wave", "done": True, "measure": ""}
     rows = [row | {"words": f"A waves at B in way {i} {'x' * 40}"} for i in range(9)]
     assert len(note([rows])) <= 350 and "more" in note([rows])
+
+
+@pytest.mark.parametrize(
+    ("sentence", "rule"),
+    [
+        ("A limps around B.", "limps(a)"),
+        ("A skips away.", "hops(a"),
+        ("A crawls away from B.", "low(a)"),
+        ("A staggers away.", ""),
+    ],
+)
+def test_a_gait_is_measured_where_a_rule_knows_it(sentence: str, rule: str) -> None:
+    (act,) = read(sentence).acts
+    found = dict(qualifiers(act, lexicon().entries[act.act], "a", "", sentence))["in which manner"]
+    assert rule in found and bool(rule) is bool(found)

@@ -80,6 +80,13 @@ def test_a_person_who_lies_gets_up_before_a_cartwheel(engine: Engine) -> None:
     assert speed.max() < 9.0
 
 
+def test_two_who_crawl_up_to_each_other_do_not_crawl_into_each_other(engine: Engine) -> None:
+    found = made(engine, "They crawl up to each other.", seconds=4.5)
+    gap = np.linalg.norm((found[0] - found[1])[:, 0][:, [0, 2]], axis=1)
+    assert gap[0] - gap[-1] > 0.8 and gap[-30:].min() > 1.3
+    assert heights(found, 0).max() < 0.75
+
+
 def test_who_kneels_ties_a_shoe_without_getting_up_before(engine: Engine) -> None:
     beats = (Beat("Person A kneels down.", seconds=4.0), Beat("Person A ties a shoe.", seconds=5.0))
     pelvis = positions(run(engine, SceneRequest(beats=beats, **QUICK)))[0, :, 0, 1]
