@@ -51,6 +51,7 @@ class Stroke:
         in_time: two people make it in one time.
         on: "head", "trunk" or "hands": the part of one's own body that the hand is on. The network is held to it
             there, and to where the head is; other gestures are a draft.
+        held: the network is held to it, as it would raise or lower the hand.
     """
 
     at: Place = (0.0, 0.0, 0.0)
@@ -66,6 +67,7 @@ class Stroke:
     sinks: bool = False
     in_time: bool = False
     on: str = ""
+    held: bool = False
 
     def way(self, out: float, seconds: Array) -> Array:
         """A wrist's way (N, 3) in metres; ``out`` is 1 for the left hand and -1 for the right."""
@@ -217,7 +219,7 @@ def hand_parts(
         turns = heading_matrix(stretch.course(person).headings[at[shown]])
         arms[:, joints] = np.einsum("nij,nsj->nsi", turns, places[shown])
         part = stretch.known(person, at[shown], arms, joints)
-        yield replace(part, soft=not GESTURES[gesture.gesture].on)
+        yield replace(part, soft=not (GESTURES[gesture.gesture].on or GESTURES[gesture.gesture].held))
 
 
 def _arms(
