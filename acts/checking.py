@@ -162,7 +162,7 @@ def _measure(failed: list[str], rules: list[str], motion: Motion) -> str:
     return next(filter(None, (measured(rule, motion, lacking=lacking) for rule in failed or rules)), "")
 
 
-_AT_ONCE = re.compile(r"\b(?:together|simultaneously|at the same time|in unison)\b", re.IGNORECASE)
+_AT_ONCE = re.compile(r"\b(?:together|simultaneously|at the same time|in (?:unison|sync|synchrony))\b", re.IGNORECASE)
 _LATER = 0.2
 """Seconds by which an act that comes after another is later, at least."""
 _ENTERS = re.compile(r"\b(?:down|up|onto|(?:get|take|mount|jump|hop|climb|leap|drop|sink|lower)s?)\b")

@@ -333,7 +333,9 @@ def formations(event: Event, named: Mapping[str, Span | None]) -> Iterator[Event
             continue
         own = event.lemma in vocabulary().classes.get(f"own {noun}", ())
         verb = event.lemma if own else verb
-        if noun == "unison" and not own and event.lemma in vocabulary().verbs["goes"]:
+        if noun == "unison" and not own:
+            if event.lemma not in vocabulary().verbs["goes"] and len(who.who) == 2:
+                continue  # what two do is done at once as it is: "they clap in unison"
             noun = "step"
         ongoing = event.ongoing and verb == event.lemma
         formed = Event(verb, who, first=event.first, last=event.last, ongoing=ongoing, said=named.get(name))
@@ -428,6 +430,8 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
             noun=None,
             direction=None,
         )
+        if preposition == "for" and event.lemma in vocabulary().verbs["wished"]:
+            done.modality = "wished"  # "asks her for a dance"
         words = [word for word in event.words if word not in event.particles]
         performed = replace(done, lemma=PERFORM, object=ref, dative=done.object, words=words, noun=done)
         yield preposition, done if ref.lemma in known.frames and not own else performed

@@ -78,7 +78,9 @@ class Reader:
 
     def _is_swallowed(self, token: Token) -> bool:
         """True for a person whom the parser took for a part of the noun behind: "the man waves"."""
-        named = token.text in (A_NAME, B_NAME) or self._words.is_usual_person(token.lemma_.lower())
+        person = self._words.is_usual_person
+        named = token.text in (A_NAME, B_NAME) or person(token.lemma_.lower())
+        named = named and not person(token.head.lemma_.lower())  # "the police officer"
         return named and token.dep_ in ("compound", "nmod", "amod") and token.head.i > token.i
 
     def _states(self) -> None:

@@ -33,6 +33,7 @@ _DIGESTS = {
 }
 """SHA-256 of the three networks of en_core_web_sm 3.8.0."""
 _HER = re.compile(r"\bher(?= (?:(?:left|right) ([a-z]+)|close\b))")
+_AFTER = re.compile(r"\bafter(?= (?:him|her|them) to\b)")
 _lock = threading.Lock()
 
 
@@ -81,11 +82,12 @@ def _pronoun(her: re.Match[str]) -> str:
 def parse(text: str) -> Doc:
     """The syntax of a text.
 
-    "Her right cheek" is parsed as "his right cheek", and "pulls her close" as "pulls him close", which mean one thing.
+    "Her right cheek" is parsed as "his right cheek", "pulls her close" as "pulls him close", and "runs after her to
+    apologize" as "runs under her to apologize", whose syntax is the same.
     """
     with _lock:  # loads once, and spaCy's pipeline is not meant for several threads
         _words()
-        doc = _language()(_HER.sub(_pronoun, text))
+        doc = _language()(_AFTER.sub("under", _HER.sub(_pronoun, text)))
     if doc.text == text:
         return doc
     said = {"tags": "tag_", "pos": "pos_", "lemmas": "lemma_", "deps": "dep_"}
@@ -331,11 +333,20 @@ class ClauseTree:
         if token.i not in self._heads:
             clauses = (head for head in token.ancestors if self.is_clause(head))
             first = next(clauses, None)
+            if token.dep_ == "advcl" and token.tag_ == "VBG":
+                first = self._behind_comma(token) or first
             if first is not None and token.dep_ == "conj" and token.tag_ in ("VBZ", "VBD"):
                 finite = (h for h in (first, *clauses) if is_finite(h) and not _is_asked(h))
                 first = self._listed(token) or next(finite, first)
             self._heads[token.i] = first
         return self._heads[token.i]
+
+    def _behind_comma(self, token: Token) -> Token | None:
+        """The verb of the clause that a participle goes on with: "while the other waits, tapping a foot"."""
+        comma = token.left_edge.i - 1
+        before = self.doc[comma - 1] if comma > 0 and self.doc[comma].text == "," else token
+        verb = next((verb for verb in (before, *before.ancestors) if is_finite(verb) and self.is_clause(verb)), token)
+        return verb if verb.dep_ == "advcl" and verb.i < comma and has(verb, "nsubj") else None
 
     def _listed(self, token: Token) -> Token | None:
         """The verb of a relative clause that goes on with a list: "pushes B, who stumbles, gets up and runs"."""

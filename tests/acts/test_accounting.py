@@ -31,6 +31,8 @@ from webdemo.inference.verdicts import note
         ("Two people sit down, and one of them waves.", ()),
         ("There are two people who dance.", ()),
         ("A couple of kids hug.", ()),
+        ("The police officer waves.", ()),
+        ("The yoga teacher claps in unison with her.", ()),
         ("One of the kids waves at the other.", ()),
         ("A hurries and keeps walking.", ()),
         ("She is in a hurry and pulls him.", ("in a hurry",)),

@@ -80,7 +80,13 @@ def test_what_is_done_instead_is_all_that_is_done() -> None:
         ("A and B hug and he waves", ["ab hug", "a wave b"]),
         # paths, and one's own limbs
         ("A walks a circle around B.", ["a walk-around b"]),
-        ("Both raise the right arm in unison.", ["ab raise-arm", "ab unison"]),
+        ("Both raise the right arm in unison.", ["ab raise-arm"]),
+        ("They jump in sync.", ["ab jump"]),
+        # whose participle stands behind a comma, and what is gone after in order to do something
+        ("One talks while the other waits, tapping a foot.", ["a talk", "b stand-still", "b tap-foot"]),
+        ("She hurries after her to apologize.", ["a follow b", "a beg b"]),
+        ("She asks him for a dance.", ["a tell b", "a dance b (wished)"]),
+        ("She stands up for her brother.", ["a shield b"]),
         ("They lift their left leg in canon.", ["a raise-leg", "b raise-leg"]),
         ("They touch palms.", ["ab push-palms"]),
         ("They pat each other on the back.", ["a pat b", "b pat a"]),
