@@ -246,9 +246,7 @@ def _counts(token: Token, parsed: Parse, names: Set[str] = frozenset()) -> bool:
         return names.isdisjoint((lemma, token.lower_, token.head.lower_))
     if token.pos_ in ("NUM", "ADJ") and words.is_person(_lemma(token.head, parsed)):
         return not (token.pos_ == "NUM" or words.age(lemma))
-    if token.dep_ == "compound" and words.is_person(_lemma(token.head, parsed)):
-        return False  # "the yoga teacher"
-    return True
+    return token.dep_ != "compound" or not words.is_person(_lemma(token.head, parsed))  # "the yoga teacher"
 
 
 def _read_by(token: Token, start: int, stop: int, plan: Plan, known: Lexicon, parsed: Parse) -> str | None:
