@@ -1,9 +1,19 @@
 """The command ``score``: requests as a user's, or the sentences as they are."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
+import pytest
+
+from acts import read
+from acts.staging.given import Story
+from acts.staging.stage import scores_of
+from acts.staging.window import KnownPath, Window
+from motion import InputError
 from motion.metrics.sentences import load_sentences
-from webdemo.cli.scoring import Scoring, _folder
+from motion.transforms import Placement
+from webdemo.cli.scoring import Scoring, _folder, leave_places
 from webdemo.inference import GenerateRequest
 from webdemo.inference.story.sentences import as_scene
 
@@ -21,3 +31,14 @@ def test_sentences_are_made_as_on_the_page_or_plain(tmp_path: Path) -> None:
     assert len(scene.beats) > 1 and not scene.planned
     kept = [_folder(tmp_path, scoring, "weights") for scoring in (page, plain)]
     assert kept[0] is not None and kept[1] is not None and kept[0].folder != kept[1].folder
+
+
+def test_of_a_plan_the_places_are_left() -> None:
+    pipeline = SimpleNamespace(name="intergen", scenes=SimpleNamespace(planner=None))
+    leave_places(pipeline)
+    story = Story(scores_of([read("A walks up to B and waves.").acts]), [4.0], [0, 120], seed=0)
+    placement = Placement(np.eye(3), np.zeros(3), np.zeros(3))
+    parts = pipeline.scenes.planner(story, Window(0, 0, 0, 120), np.zeros((2, 120, 22, 3)), placement, ())
+    assert parts and all(isinstance(part, KnownPath) for part in parts)
+    with pytest.raises(InputError, match="leave --places out"):
+        leave_places(SimpleNamespace(name="regennet"))

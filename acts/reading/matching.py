@@ -414,8 +414,12 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
             continue
         own = any(vocabulary().part(word) for word in event.words)  # "with slow arm circles"
         bodily = is_act(ref.lemma) or own or (preposition == "in" and event.lemma in closed("is there"))
-        hurries = event.lemma in closed("is there") and ref.lemma in vocabulary().gaits  # "is in a hurry"
-        if not bodily or hurries or ref.lemma in vocabulary().verbs["no_nouns"]:
+        if ref.lemma in vocabulary().gaits:  # "is in a hurry"
+            goes = event.lemma in closed("is there")
+        else:  # "walks with a swagger"
+            shown = {shape.do for name, _ in known.frames.get(ref.lemma, ()) for shape in known.entries[name].stage}
+            goes = preposition == "with" and shown == {"go"}
+        if not bodily or goes or ref.lemma in vocabulary().verbs["no_nouns"]:
             continue
         others = [each for j, each in enumerate(event.prepositions) if j != i and j in rest]
         person = event.object if event.object is not None and event.object.kind in ("person", "each") else None

@@ -250,7 +250,8 @@ class Reader:
             stops = self._event_of(head)
             if stops is not None and stops.lemma in self._words.verbs["prevents"]:
                 event.modality = "wished"  # "catches him before he falls"
-        asked = token.dep_ == "acl" and token.tag_ == "VB"  # "asks the princess to dance"
+        # "asks the princess to dance", "signals for him to leave"
+        asked = token.tag_ == "VB" and (token.dep_ == "acl" or (token.dep_ == "advcl" and "for" in marks))
         if head is None or not (asked or token.dep_ in ("xcomp", "ccomp", "pcomp", "advcl")):
             if head is not None and token.dep_ == "conj":
                 above = self._event_of(head)
@@ -262,7 +263,7 @@ class Reader:
                     event.modality, event.denied = above.modality, event.denied or above.denied
             return
         above = self._event_of(head)
-        if above is None or token.dep_ == "advcl":
+        if above is None or (token.dep_ == "advcl" and not asked):
             return
         verbs = self._words.verbs
         if above.lemma in closed("says") and token.tag_ == "VB":  # "says hit me"

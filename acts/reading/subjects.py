@@ -85,6 +85,8 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
         hers = bool(cast.thing_sex) and cast.thing_sex == cast.sex(subject)  # "kisses her hand; she withdraws it"
         owner = cast.thing.who or (said_of if cast.thing.kind == "part" and not hers else "")
         return replace(cast.thing, who=owner, first=first, last=last)  # "extends a hand, and she shakes it"
+    if token.dep_ in ("dobj", "pobj") and token.lower_ in ("that", "which") and token.head.dep_ == "relcl":
+        return replace(reference(token.head.head, cast, subject), first=first, last=last)  # "the cup that she holds"
     ref = _reference(token, cast, subject)
     cast.seen[token.i] = ref
     if ref.kind == "person":
@@ -100,7 +102,8 @@ def _is_aside(token: Token, cast: Cast) -> bool:
     verb = token.head.head if token.dep_ == "pobj" else token
     objects = (child for child in verb.children if child.dep_ in ("dobj", "obj"))
     thing = cast.thing
-    return thing is not None and thing.kind == "thing" and any(o.lemma_.lower() == thing.lemma for o in objects)
+    named = thing is not None and any(o.lemma_.lower() in ("it", thing.lemma) for o in objects)
+    return named and thing.kind == "thing"
 
 
 def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:

@@ -115,6 +115,15 @@ def places_of(parts: Sequence[Part]) -> list[Part]:
     return held
 
 
+def places_alone(parts: Sequence[Part]) -> list[Part]:
+    """The places and headings of parts, with how low those are who are not upright, and no pose."""
+    return [
+        part
+        for part in places_of(softened(parts))
+        if isinstance(part, KnownPath) or tuple(part.joints) == (JOINT["pelvis"],)
+    ]
+
+
 def _headings(joints: Collection[int], poses: Array) -> Array | None:
     """(N,) radians in which poses (N, 22, 3) face by their hips, or else by their shoulders, if these are given."""
     for pair in ("hip", "shoulder"):

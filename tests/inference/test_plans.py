@@ -65,14 +65,14 @@ def forgotten_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.import_module("acts.reading.read"), "_attempts", know_nothing)
 
 
-def changed_stage(monkeypatch: pytest.MonkeyPatch) -> None:
+def changed_stage(monkeypatch: pytest.MonkeyPatch, pipeline: Any) -> None:
     """From now on every plan of acts is staged in another way."""
 
     def elsewhere(asked: Any, of: Any, made: Any, placement: Any, taken: Any) -> list[Any]:
         place = np.array([[1.5, 1.0]])
         return [KnownPath(person, [of.past + 20], place) for person in (0, 1) if person not in taken]
 
-    monkeypatch.setattr(scene, "plan_parts", elsewhere)
+    monkeypatch.setattr(pipeline.scenes, "planner", elsewhere)
     monkeypatch.setattr(scene, "wishes", lambda *_: ([], ["Not so."]))
     monkeypatch.setattr(scene, "_anchor", lambda _: (3.0, 3.0, 1.0))
     alone = ("One person falls.", "One person jumps.")
@@ -92,12 +92,12 @@ def test_a_replayed_plan_gives_the_same_bytes_whatever_the_words_now_mean(
     monkeypatch.setattr(reading_engine.pipeline("intergen").scenes, "parts", Parts())
     with monkeypatch.context() as forgetful:
         forgotten_reader(forgetful)
-        changed_stage(forgetful)
+        changed_stage(forgetful, reading_engine.pipeline("intergen"))
         replayed = run(reading_engine, replace(asked, plan=kept_plan(manifest)))
     for sample in range(asked.samples):
         np.testing.assert_array_equal(positions(replayed, sample), positions(first, sample))
     assert replayed.manifest == first.manifest
-    changed_stage(monkeypatch)
+    changed_stage(monkeypatch, reading_engine.pipeline("intergen"))
     read_now = positions(run(reading_engine, asked))
     assert read_now.shape != positions(first).shape or np.abs(read_now - positions(first)).max() > 1e-3
 

@@ -16,20 +16,15 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from torch import Tensor
-
 from acts import Act, Plan, lexicon, read
 from acts.captions import worded
 from acts.checking import checked
 from acts.lexicon import Entry
 from acts.shapes import Shape
-from acts.staging import given as staging
-from acts.staging.poses import JOINT
-from acts.staging.window import KnownPath, Part
 from motion import Duet
 from motion.formats.files import write_text
 from training.core.shell import exit_code
-from webdemo.inference.pipelines import scene
+from webdemo.cli.scoring import leave_places, silence
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.run import Result
 from webdemo.inference.story.beats import Beat
@@ -72,12 +67,6 @@ class Made:
 def gives_poses(shape: Shape) -> bool:
     """True for a shape that gives poses; the others give places, or nothing."""
     return shape.do not in PLACES or bool(getattr(shape, "gait", ""))
-
-
-def places_of(parts: Sequence[Part]) -> list[Part]:
-    """The places and headings of parts (in the network's frame), without their poses."""
-    left = staging.places_of(staging.softened(parts))
-    return [part for part in left if isinstance(part, KnownPath) or tuple(part.joints) == (JOINT["pelvis"],)]
 
 
 def wordings(act: Act, entry: Entry) -> list[str]:
@@ -161,17 +150,16 @@ def _run(options: argparse.Namespace) -> None:
     guided = pipeline.model.denoiser.guided
     pipeline.scenes.parts = Parts(0)  # zeros are not to be taken for what the network made
 
-    def nothing(x: Tensor, *_: Any, **__: Any) -> Tensor:
-        return x.new_zeros(x.shape)
-
     def run(request: SceneRequest, zeros: bool) -> Duet:
-        pipeline.model.denoiser.guided = nothing if zeros else guided
+        pipeline.model.denoiser.guided = guided
+        if zeros:
+            silence(pipeline)
         *_, result = engine.run(request)
         assert isinstance(result, Result) and isinstance(result.duets[0], Duet)
         return result.duets[0]
 
-    planned, made = scene.plan_parts, list[Made]()
-    scene.plan_parts = lambda *asked: places_of(planned(*asked))
+    made = list[Made]()
+    leave_places(pipeline)
     for name, entry in lexicon().entries.items():
         given = entry.shown and entry.rule and any(map(gives_poses, entry.stage))
         if not given or (options.only and name not in options.only):

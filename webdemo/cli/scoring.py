@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from acts.staging.given import places_alone, plan_parts
 from motion import Duet, InputError
 from motion.formats.files import write_text
 from webdemo.inference.method import Method
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from motion.metrics.sentences.catalogue import Motions
 
 SEEDS = (1, 16)
-_VERSION = 2
+_VERSION = 3
 """Of how a sentence becomes a motion: motions that were kept are not those of another version."""
 
 
@@ -40,6 +41,7 @@ class Scoring:
         planned: the plan lays out places and poses; else the network has each beat of a sentence to itself.
         plain: sentences are given to the network as they are, neither split nor planned.
         zeros: the network's predictions are zeros, see :func:`silence`.
+        places: of the plan the network gets the places alone, see :func:`leave_places`.
         strictness: as in :class:`GenerateRequest`.
     """
 
@@ -50,13 +52,15 @@ class Scoring:
     planned: bool = True
     plain: bool = False
     zeros: bool = False
+    places: bool = False
     strictness: float = GenerateRequest.strictness
 
     def request(self, sentence: Sentence, seed: int, actor: Duet | None) -> GenerateRequest | ReactRequest:
         """The request for both people, or for the partner of an actor."""
         chosen = method(self.model)
         fields: dict[str, Any] = asdict(self) | {"seed": seed}
-        planned, plain, _, strictness = (fields.pop(name) for name in ("planned", "plain", "zeros", "strictness"))
+        planned, plain, strictness = (fields.pop(name) for name in ("planned", "plain", "strictness"))
+        del fields["zeros"], fields["places"]
         if actor is None:
             shortest, longest = chosen.seconds
             seconds = min(max(sentence.seconds, shortest), longest)
@@ -81,6 +85,7 @@ def add_score(commands: Any) -> None:
     parser.add_argument("--damping", type=float, default=SamplingRequest.damping)
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these sentences or tags")
     parser.add_argument("--alone", action="store_true", help="leave each beat to the network: no plan")
+    parser.add_argument("--places", action="store_true", help="of the plan, give the network the places alone")
     parser.add_argument(
         "--plain", action="store_true", help="give the sentences to the network as they are: no beats, no plan"
     )
@@ -106,6 +111,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         not options.alone,
         options.plain,
         options.zeros,
+        options.places,
         options.strictness,
     )
     sentences = _chosen(options)
@@ -119,6 +125,8 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
     digest = engine.pipeline(scored.name).digest
     if options.zeros:
         silence(engine.pipeline(scored.name))
+    if options.places:
+        leave_places(engine.pipeline(scored.name))
     kept = _folder(options.motions, scoring, digest)
     duets = [[_motion(engine, scoring, s, seed, kept) for seed in range(options.seeds)] for s in sentences]
     print(file=sys.stderr)
@@ -135,6 +143,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         f"damping {scoring.damping:g}, weights {weights}"
         f"{'; sentences neither split nor planned' if scoring.plain else '' if scoring.planned else '; no plan'}"
         f"{'; zeros in place of the network' if scoring.zeros else ''}"
+        f"{'; of the plan the places alone' if scoring.places else ''}"
         f"{f'; strictness {scoring.strictness:g}' if scoring.strictness else ''}."
     )
     print(table(scores))
@@ -165,6 +174,18 @@ def silence(pipeline: Any) -> None:
     if network is None or not hasattr(network, "guided"):
         raise InputError(f"{pipeline.name} has no network that denoises: leave --zeros out.")
     network.guided = lambda x, *_, **__: x.new_zeros(x.shape)
+
+
+def leave_places(pipeline: Any) -> None:
+    """Leaves of the plan only the places and headings, for all that a network of scenes makes from now on.
+
+    Raises:
+        InputError: for a method that makes no scenes.
+    """
+    scenes = getattr(pipeline, "scenes", None)
+    if scenes is None:
+        raise InputError(f"{pipeline.name} has no plan: leave --places out.")
+    scenes.planner = lambda *asked: places_alone(plan_parts(*asked))
 
 
 def _chosen(options: argparse.Namespace) -> Sequence[Sentence]:

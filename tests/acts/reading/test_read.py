@@ -245,6 +245,11 @@ def test_a_formation_goes_on_as_its_verb_does() -> None:
         ("A looks out of the window.", ["look-at-thing window"]),
         ("A puts out the cigarette.", ["stub-out cigarette"]),
         ("A goes to the kitchen.", ["walk-away None"]),
+        ("A drinks from the cup that she is holding.", ["drink cup", "hold-thing cup"]),
+        (
+            "A person picks something up with both hands, lifts it to waist height and puts it down.",
+            ["pick-up-thing something", "lift-thing something", "put-down-thing something"],
+        ),
     ],
 )
 def test_the_thing_of_an_act_is_what_it_is_done_with_or_before(text: str, acts: list[str]) -> None:

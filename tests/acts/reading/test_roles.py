@@ -87,6 +87,8 @@ def test_what_is_done_instead_is_all_that_is_done() -> None:
         ("She hurries after her to apologize.", ["a follow b", "a beg b"]),
         ("She asks him for a dance.", ["a tell b", "a dance b (wished)"]),
         ("She stands up for her brother.", ["a shield b"]),
+        ("She signals for him to leave.", ["a tell b", "b walk-away a (wished)"]),
+        ("A man walks with a swagger.", ["a walk-ahead"]),
         ("They lift their left leg in canon.", ["a raise-leg", "b raise-leg"]),
         ("They touch palms.", ["ab push-palms"]),
         ("They pat each other on the back.", ["a pat b", "b pat a"]),

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from acts import read
-from acts.staging.given import Story, plan_parts
-from acts.staging.poses import ALL, HANDS, JOINT
+from acts.staging.given import Story, places_alone, plan_parts
+from acts.staging.poses import ALL, HANDS, JOINT, upright
 from acts.staging.stage import scores_of
 from acts.staging.window import KnownFrames, KnownPath, Part, Window
 from motion import FPS, SMPL22
@@ -116,3 +116,17 @@ def test_two_make_a_gesture_in_time_or_each_in_their_own(words: str, together: b
 def test_the_hand_hangs_after_pats_of_the_back(words: str, rests: bool) -> None:
     (arm,) = (part for part in poses_of(words) if part.person == 0)
     assert (arm.frames[-1] > FRAMES - 10) is rests
+
+
+def test_without_poses_the_places_of_people_are_left_and_how_low_they_are() -> None:
+    frames = list(range(0, 61, 4))
+    poses = np.stack([upright(np.array([0.0, t / 60]), 0.5) for t in frames])
+    way = KnownPath(1, [3], np.zeros((1, 2)))
+    path, same = places_alone([KnownFrames(0, frames, poses), KnownFrames(0, frames, poses, joints=HANDS), way])
+    assert same is way and isinstance(path, KnownPath) and path.frames == [0, 32, 60]
+    np.testing.assert_allclose(path.places, poses[[0, 8, 15], 0][:, [0, 2]])
+    assert path.turned and path.headings == pytest.approx([0.5] * 3)
+    low, path = places_alone([KnownFrames(0, frames, poses - np.outer(np.arange(16) > 7, [0.0, 0.6, 0.0])[:, None])])
+    assert isinstance(low, KnownFrames) and low.joints == (0,) and low.frames == frames[8:]
+    assert isinstance(path, KnownPath) and not path.turned and path.headings is None, "the hips of who lies say nothing"
+    assert path.frames == [0, 28]

@@ -5,29 +5,11 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
 
 from acts import lexicon
-from acts.staging.poses import upright
-from acts.staging.window import KnownFrames, KnownPath
 from training.evaluate import network_first
-from training.evaluate.network_first import Made, found, places_of, table
-
-
-def test_of_poses_the_places_are_left() -> None:
-    frames = list(range(0, 61, 4))
-    poses = np.stack([upright(np.array([0.0, t / 60]), 0.5) for t in frames])
-    way = KnownPath(1, [3], np.zeros((1, 2)))
-    body, (_, hand) = KnownFrames(0, frames, poses), (0, KnownFrames(0, frames, poses, joints=(20, 21)))
-    path, same = places_of([body, hand, way])
-    assert same is way and isinstance(path, KnownPath) and path.frames == [0, 32, 60]
-    np.testing.assert_allclose(path.places, poses[[0, 8, 15], 0][:, [0, 2]])
-    assert path.turned and path.headings == pytest.approx([0.5] * 3)
-    low, path = places_of([KnownFrames(0, frames, poses - np.outer(np.arange(16) > 7, [0.0, 0.6, 0.0])[:, None])])
-    assert isinstance(low, KnownFrames) and low.joints == (0,) and low.frames == frames[8:]
-    assert isinstance(path, KnownPath) and not path.turned and path.headings is None, "the hips of who lies say nothing"
-    assert path.frames == [0, 28]
+from training.evaluate.network_first import Made, found, table
 
 
 @pytest.mark.parametrize(

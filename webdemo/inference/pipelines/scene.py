@@ -12,7 +12,7 @@ import json
 import math
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,6 +40,8 @@ from .wishes import wishes
 
 KEPT = 400
 """Windows that are kept; one of five seconds takes 160 kB."""
+Planner = Callable[[Story, Window, Array, Placement, Collection[int]], Sequence[Part]]
+"""What a window is given by its story, as :func:`acts.staging.given.plan_parts`."""
 FAR = 6.0
 """Metres between two people beyond which the training scenes hold next to nothing."""
 
@@ -88,6 +90,10 @@ class SceneMaker:
     Args:
         pipeline: samples the windows.
         words: what a window's sentence gives the network, as :meth:`.intergen.InterGenPipeline.words`.
+
+    Attributes:
+        parts: windows that were made before.
+        planner: lays out what the words of a window say.
     """
 
     def __init__(
@@ -97,6 +103,7 @@ class SceneMaker:
     ) -> None:
         self.pipeline, self.words = pipeline, words
         self.parts = Parts()
+        self.planner: Planner = plan_parts
 
     def run(
         self, request: SceneRequest, cancel: CancelToken, timer: StageTimer, notes: Sequence[str] = ()
@@ -130,7 +137,7 @@ class SceneMaker:
             for window in listed:
                 cancel.raise_if_cancelled()
                 planned = kept.windows[len(made_plans)] if kept else None
-                setting = Setting.of(request, window, scene, planned)
+                setting = Setting.of(request, window, scene, self.planner, planned)
                 made_plans.append(setting.plan)
                 said += setting.plan.notes
                 made = yield from self._window(request, sample, setting, cancel, timer, done, steps)
@@ -268,13 +275,16 @@ class Setting:
     strictness: float
 
     @classmethod
-    def of(cls, request: SceneRequest, window: Window, scene: Array, kept: WindowPlan | None = None) -> Setting:
+    def of(
+        cls, request: SceneRequest, window: Window, scene: Array, planner: Planner, kept: WindowPlan | None = None
+    ) -> Setting:
         """The setting of a window in a scene (2, T, 22, 3) whose earlier frames are there.
 
         Args:
             request: the scene's request.
             window: the window.
             scene: as far as it is made.
+            planner: lays out what the words say.
             kept: what was planned of the window when the scene was made before; by default it is planned now.
         """
         past, length = window.past, window.stop - window.start
@@ -282,7 +292,7 @@ class Setting:
         after = scene[:, window.stop : window.stop + window.after]
         if request.loop and window.after:
             after = scene[:, : window.after]
-        plan = kept or _plan(request, window, scene, _place(request, before, after))
+        plan = kept or _plan(request, window, scene, _place(request, before, after), planner)
         placement = _at(plan.place)
         parts: list[Part] = []
         for person in range(2):
@@ -331,7 +341,9 @@ class Setting:
         return sha256.hexdigest()
 
 
-def _plan(request: SceneRequest, window: Window, scene: Array, place: tuple[float, float, float]) -> WindowPlan:
+def _plan(
+    request: SceneRequest, window: Window, scene: Array, place: tuple[float, float, float], planner: Planner
+) -> WindowPlan:
     """The plan, by the wishes and the words of a scene, of a window whose frame begins at a place."""
     placement, beat = _at(place), request.beats[window.beat]
     asked = bool(request.paths or request.poses)
@@ -339,7 +351,7 @@ def _plan(request: SceneRequest, window: Window, scene: Array, place: tuple[floa
     if request.plans_words:
         seconds = [each.length for each in request.beats]
         story = Story(request.scores, seconds, request.edges, request.seed, asked)
-        parts += plan_parts(story, window, scene, placement, {part.person for part in parts})
+        parts += planner(story, window, scene, placement, {part.person for part in parts})
     alone = beat.alone if any(beat.alone) else request.scores[window.beat].alone
     return WindowPlan(place, tuple(parts), alone, tuple(notes))
 
