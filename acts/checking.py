@@ -1,9 +1,10 @@
 """A plan and a motion → which of its acts are done, by the rules of their entries.
 
 A rule is a condition of :mod:`motion.metrics.sentences` in which these names stand for an act's own values: ``who`` is
-its agent and ``whom`` the other; ``side`` and ``way`` are "any" and ``part`` (of the body) is "body" where the words
-name none; ``n`` is how often, 1 where they do not say, ``several`` likewise 2, and ``times(…, n)`` asks for no
-more where they do; ``metres`` is how far apart, and ``held`` the share of the time that two fifths of a beat are.
+its agent and ``whom`` the other; ``side`` and ``way`` are "any", ``hands`` is "both" and ``part`` (of the body) is
+"body" where the words name none; ``n`` is how often, 1 where they do not say, ``several`` likewise 2, and
+``times(…, n)`` asks for no more where they do; ``metres`` is how far apart, and ``held`` the share of the time that two
+fifths of a beat are.
 """
 
 from __future__ import annotations
@@ -35,7 +36,15 @@ NO_RULE = "nothing measures it"
 
 HELD = 0.4
 """The part of a motion during which a posture is held, where the words say nothing."""
-UNSAID: Mapping[str, str | float] = {"side": "any", "part": "body", "way": "any", "n": 1, "several": 2, "metres": 1.2}
+UNSAID: Mapping[str, str | float] = {
+    "side": "any",
+    "hands": "both",
+    "part": "body",
+    "way": "any",
+    "n": 1,
+    "several": 2,
+    "metres": 1.2,
+}
 """What a rule asks for where the words say nothing, beside :data:`HELD`: ``metres`` is how far apart at least."""
 
 
@@ -111,8 +120,9 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
     asked: dict[str, list[str]] = {}
     held = round(max(HELD / len(plan.beats()), motion.fps / motion.frames), 2)
     unchecked: dict[str, None] = {}
+    again = any(each.act == act.act and each.id != act.id and {*each.agents} & {*act.agents} for each in plan.acts)
     for who in act.agents:
-        asked[who] = rules_of(act, entry, who, held=held)
+        asked[who] = rules_of(act, entry, who, counted=not again, held=held)
         mask = next((mask for rule in asked[who] for mask in masks(rule)[:1]), "")
         for kind, rule in qualifiers(act, entry, who, mask, plan.text(act.words), to_other=act.id in left.towards):
             asked[who] += [rule] if rule else []
@@ -260,21 +270,26 @@ def _seen(act: Act, known: Lexicon) -> list[str]:
     return [mask for mask in spans if not mask.startswith("stays(")]
 
 
+_SIDE = re.compile(r"\b(?:side|hands)\b")
 _COUNT = re.compile(r"\btimes\((.*?), (n|several)\)")
 _NAME = re.compile(r"'[^']*'|\b[a-z]+\b(?!\s*[(=])")
 """Names in a rule, and what stands in quotes, which is none."""
 
 
 # ---- rules -----------------------------------------------------------------------------------------------
-def rules_of(act: Act, entry: Entry, who: str, **said: str | float) -> list[str]:
-    """The rules of an act with its own values in the place of their names, for one of its agents, and what is said."""
+def rules_of(act: Act, entry: Entry, who: str, *, counted: bool = True, **said: str | float) -> list[str]:
+    """The rules of an act with its own values in the place of their names, for one of its agents, and what is said.
+
+    Where its words give a number, it is asked for so often, if it is ``counted``, and else at least so often.
+    """
     whom = other_of(who)
     part = body_part(act) or "body"
     part = f"{act.part_side} {part}" if act.part_side and has_sides(part) else part
-    said |= {"side": act.side or "any", "part": part, "way": side_of(act)}
+    said |= {"side": act.side or "any", "hands": act.side or "both", "part": part, "way": side_of(act)}
     said |= {"n": act.times, "several": act.times} if act.times else {}
     said |= {"metres": 0.7 * act.distance} if act.distance else {}
-    return [cast(rule, who, whom, counted=bool(act.times), **said) for rule in entry.rule]
+    counted = counted and bool(act.times)
+    return [cast(rule, who, whom, counted=counted, **said) for rule in entry.rule]
 
 
 @lru_cache(maxsize=4096)
@@ -313,7 +328,7 @@ def _words(act: Act, entry: Entry | None, plan: Plan) -> str:
         text = text.replace(person, name)
     if act.side is not None and " a hand " in text:
         text = text.replace(" a hand ", " both hands " if act.side == "both" else f" the {act.side} hand ")
-    elif act.side not in (None, act.direction, *text.split()) and "side" in "".join(entry.rule):
+    elif act.side not in (None, act.direction, *text.split()) and _SIDE.search("".join(entry.rule)):
         text += by_limb(act, caption)
     way = {"back": "backwards"}.get(act.direction or "", act.direction)
     ways = closed("turns") | ({"forward", "backwards"} if travels(entry) else set())

@@ -53,12 +53,12 @@ def qualifiers(
     if act.times is not None and not names & {"n", "several"}:
         steps = goes and act.distance is not None
         yield ("how many steps", "") if steps else ("how often", _so_often(act, entry, who))
-    if act.side in ("left", "right") and act.side != act.direction and "side" not in names:
+    if act.side in ("left", "right") and act.side != act.direction and not names & {"side", "hands"}:
         yield "which side", ""
     if act.part_side and not ("part" in names and has_sides(body_part(act))):
         yield "which side", _on_side(act, entry, who)
     both = _BOTH.search(said) if act.side == "both" else None
-    if both and "side" not in names and "'both'" not in rules and not names & _TWO_HANDED:
+    if both and not names & {"side", "hands"} and "'both'" not in rules and not names & _TWO_HANDED:
         yield "on both sides" if both[1] in ("feet", "legs", "knees") else "with both hands", ""
     leaves = names & {"backs", "turns_away"} and act.direction in ("away", "back")  # "backs away"
     known = said_words((*entry.frames, *entry.caption))

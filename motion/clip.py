@@ -171,10 +171,6 @@ class Duet:
         grips = cut_grips(self.grips, first, last)
         return replace(self, a=self.a.cut(start, stop), b=self.b.cut(start, stop), things=things, grips=grips)
 
-    def swapped(self) -> Duet:
-        """The same motion with the two people's places exchanged; roles stay with the place."""
-        return replace(self, a=self.b, b=self.a)
-
     def with_positions(self, positions: Sequence[Array] | Array) -> Duet:
         """The same two people with other positions (2, T, J, 3); things and grips no longer fit and are dropped."""
         a, b = self.a.with_positions(positions[0]), self.b.with_positions(positions[1])

@@ -138,11 +138,13 @@ def strike_of(blows: Blows, done: Done, *, late: bool) -> Strike | None:
     bout = shape.bout
     if len(people) == 2:
         return Strike(bout, "ab")
-    turns = "".join(dict.fromkeys("".join(each) for each, *_ in blows))
-    turns = turns if len(blows) > 1 else turns * min(act.times or 1, 5)
+    counted = any(each.times for _, _, each in blows)
+    turns = "".join(who[0] * min(each.times or 1, 5) for who, _, each in blows)
+    if len(blows) > 1 and not counted:
+        turns = "".join(dict.fromkeys(turns))
     hit = other_of(people[0])
     answered = any(hit in other.agents and shape.do in ("posture", "go") for other, e in done for shape in e.stage)
-    fight = len(blows) > 1 and not answered and bout != "throws"
+    fight = len(blows) > 1 and not (counted or answered) and bout != "throws"
     hands = tuple(each.side or "" for _, _, each in blows for _ in range(min(each.times or 1, 5)))
     if len(set(turns)) == 1 and any(hand in SIDES for hand in hands):  # "two jabs with the left and a cross"
         return Strike(bout, turns[0] * len(hands), False, answered, late, hands)

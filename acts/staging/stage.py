@@ -337,7 +337,8 @@ class _Stage:
         )
 
     def _touch(self, act: Act, shape: shapes.Touch) -> None:
-        giver, lies = act.agents[0], shape.beside and shape.part == "shoulder"  # also of a head on the chest
+        giver = self._people(act, shape)[0]
+        lies = shape.beside and shape.part == "shoulder"  # also of a head on the chest
         part: shapes.Part = "shoulder" if lies else part_of(act, shape)
         if self.touch is not None or not part:
             return

@@ -240,7 +240,7 @@ def _judge(verdict: Verdict, plan: Plan, duet: Duet, act: Act, first: int, last:
         return decided(verdict, act, plan, done=seconds >= LEAST, measure=f"looks at it for {seconds:.1f} s")
     entry = lexicon().entries.get(act.act)
     if entry is not None and entry.thing in ("gives", "takes") and verdict.done is not None and act.happens:
-        return _passed(verdict, duet, act, first, last)
+        return _passed(verdict, act, plan, duet, first, last)
     if verdict.done is not None or entry is None or entry.thing not in ("opens", "closes"):
         return verdict
     kind = kind_of(act.thing or "")
@@ -259,15 +259,17 @@ def _judge(verdict: Verdict, plan: Plan, duet: Duet, act: Act, first: int, last:
     return decided(verdict, act, plan, done=near <= AT_HAND, measure=measure)
 
 
-def _passed(verdict: Verdict, duet: Duet, act: Act, first: int, last: int) -> Verdict:
+def _passed(verdict: Verdict, act: Act, plan: Plan, duet: Duet, first: int, last: int) -> Verdict:
     """The verdict on what is handed over: done where the thing goes from hand to hand, and not judged without one."""
     rows = (duet.manifest or {}).get("things", ())
     events = [event for row in rows for event in row["events"] if event["act"] == act.id]
     at = next((event["at"] for event in events if "to" in event and first <= event["at"] * duet.fps < last + 9), None)
     if at is not None:
-        return replace(verdict, done=True, measure=f"it goes from hand to hand at {at:.1f} s")
+        return decided(verdict, act, plan, done=True, measure=f"it goes from hand to hand at {at:.1f} s")
     if why := next((event["why"] for event in events if "why" in event), ""):
-        return replace(verdict, done=False, measure=why)
+        return decided(verdict, act, plan, done=False, measure=why)
+    if len(act.agents) == 2:
+        return replace(verdict, done=None, measure="only one thing is drawn")
     drawn = not act.thing or any(row["name"] == act.thing for row in rows)
     return verdict if drawn else replace(verdict, done=None, measure=f"no {act.thing} is drawn")
 

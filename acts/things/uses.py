@@ -62,8 +62,14 @@ def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float]) -> list
     for act, first, last in act_frames(plan, start, stop, lengths):
         words = plan.text(act.words)
         each = (read(act, words, first, last) for read in (_use, _fixture, _door))
-        uses += [use for use in each if use]
+        uses += [_same(use, uses, words) for use in each if use]
     return [each for use in _at_desks(uses) for each in _in_turn(use)]
+
+
+def _same(use: Use, uses: Sequence[Use], words: str) -> Use:
+    """A use; of what goes without saying, it is of a thing of its kind that was named before."""
+    unnamed = use.name == use.kind and use.name not in words
+    return replace(use, name=next((u.name for u in uses if unnamed and u.kind == use.kind), use.name))
 
 
 def _in_turn(use: Use) -> Iterator[Use]:

@@ -110,8 +110,8 @@ def _together(people: Sequence[Recording]) -> Recording:
     first, second = (recording.people[0] for recording in people)
     if isinstance(first, RigMotion) and isinstance(second, RigMotion):
         return replace(people[0], people=(first, second))
-    alone = [_imported(recording, recording.people[0].name, ImportChoices()).motion for recording in people]
     if isinstance(first, RigMotion) or isinstance(second, RigMotion):
+        alone = [_imported(recording, recording.people[0].name, ImportChoices()).motion for recording in people]
         first, second = (clip for clip in alone if isinstance(clip, Clip))
     frames = min(first.num_frames, second.num_frames)
     return replace(people[0], people=(first.cut(0, frames), second.cut(0, frames)))
@@ -120,7 +120,7 @@ def _together(people: Sequence[Recording]) -> Recording:
 def _imported(recording: Recording, label: str, choices: ImportChoices) -> Imported:
     if (count := len(recording.people)) > MAX_PEOPLE:
         raise InputError(f"{label} holds {count} people: give {MAX_PEOPLE} or fewer in a file.")
-    people = [without_calibration(person) for person in recording.people]
+    people = _without_calibration(recording.people)
     rigs = [person for person in people if isinstance(person, RigMotion)]
     clips = [person for person in people if isinstance(person, Clip)]
     imported = _import_rigs(rigs, label, choices) if rigs else _import_clips(clips, recording, label, choices)
@@ -128,13 +128,17 @@ def _imported(recording: Recording, label: str, choices: ImportChoices) -> Impor
     return replace(imported, animations=recording.animations, beside=recording.beside, asks=asks)
 
 
-def without_calibration(person: Any) -> Any:
-    """A person (a clip or a rig's motion) without the frames of a calibration pose at the beginning."""
-    count = calibration_frames(places_of(person), person.fps)
-    if count == 0:
-        return person
-    note = _CALIBRATION.format(person.name, "frame was" if count == 1 else f"{count} frames were")
-    return replace(person, positions=person.positions[count:], notes=(*person.notes, note))
+def _without_calibration(people: Sequence[Any]) -> list[Any]:
+    """People (clips or rigs' motions) without the frames of a calibration pose at the beginning, of anybody's."""
+    seconds = max(calibration_frames(places_of(person), person.fps) / person.fps for person in people)
+    counts = [min(round(seconds * person.fps), len(person.positions) - 1) for person in people]
+    if not any(counts):
+        return list(people)
+    left = []
+    for person, count in zip(people, counts, strict=True):
+        note = _CALIBRATION.format(person.name, "frame was" if count == 1 else f"{count} frames were")
+        left.append(replace(person, positions=person.positions[count:], notes=(*person.notes, note)))
+    return left
 
 
 def _with_note(people: Sequence[Any], up: str, usual: str, label: str, choices: ImportChoices) -> list[Any]:
@@ -164,7 +168,8 @@ def _import_rigs(rigs: list[RigMotion], label: str, choices: ImportChoices) -> I
     up = choices.up or up_axis(*rigs)
     rigs = [replace(rig, up=up) for rig in _with_note(rigs, up, rest_axis(first) or "y", label, choices)]
     if up == "y" and all(own):
-        people = tuple(clip for clip in own if clip is not None)
+        frames = min(clip.num_frames for clip in own if clip is not None)
+        people = tuple(clip.cut(0, frames) for clip in own if clip is not None)
     else:
         people = retarget_together(rigs, fps=RIG_FPS)
     unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rigs[0].metres_per_unit)), "none")

@@ -19,6 +19,7 @@ export class Notebook {
     this.find = (selector) => root.querySelector(selector);
     this.chosen = new Set();
     this.last = null;
+    this.limit = null; // runs that are shown at most: of the last search
     this.retries = 0;
     this.found = null;
     this.entries = new Map();
@@ -27,7 +28,7 @@ export class Notebook {
     for (const field of root.querySelectorAll("[data-find]")) {
       field.addEventListener("input", () => {
         clearTimeout(this.timer);
-        this.timer = setTimeout(() => this.search(), field.type === "search" ? WAIT : 0);
+        this.timer = setTimeout(() => this.search(null), field.type === "search" ? WAIT : 0);
       });
     }
     this.options("kind", KINDS.map(([kind, key]) => [kind, say(key)]));
@@ -47,12 +48,13 @@ export class Notebook {
     return { words: value("words"), kind: value("kind"), model: value("model"), tag: value("tag"), starred };
   }
 
-  search(limit = null) {
-    this.act("search", { limit });
+  search(limit = this.limit) {
+    this.limit = limit;
+    this.act("search");
   }
 
   act(act, more = {}) {
-    this.tell({ act, ids: [...this.chosen], search: this.wanted(), ...more });
+    this.tell({ act, ids: [...this.chosen], search: this.wanted(), limit: this.limit, ...more });
   }
 
   /** Shows what Python found: { entries, total, limit, tags, models, removed }. */
@@ -148,7 +150,9 @@ export class Notebook {
 
   save(form, id) {
     const value = (name) => form.querySelector(`[data-field=${name}]`).value;
-    this.act("describe", { ids: [id], title: value("title"), tags: value("tags"), note: value("note") });
+    const title = value("title");
+    const named = title === this.entries.get(id).title ? {} : { title };
+    this.act("describe", { ids: [id], ...named, tags: value("tags"), note: value("note") });
   }
 
   /** Brings marks and buttons to what is chosen. */
@@ -185,7 +189,8 @@ export class Notebook {
 export function mount(element, props, watch, trigger) {
   loadStyles(new URL("notebook.css", import.meta.url).href);
   const events = { open: "submit", compare: "like", study: "edit", publish: "apply" }; // the others are "select"
-  const notebook = new Notebook(element.querySelector(".pdn"), (action) => trigger(events[action.act] ?? "select", action));
+  const root = element.querySelector(".pdn");
+  const notebook = root.notebook = new Notebook(root, (action) => trigger(events[action.act] ?? "select", action));
   let shown = null;
   const sync = () => {
     if (!props.value || props.value === shown) return;

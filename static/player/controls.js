@@ -36,7 +36,7 @@ export class Controls {
     });
     this.find(".pdd-tabs").addEventListener("click", (event) => {
       const tab = event.target.closest("[role=tab]");
-      if (tab) player.select([...tab.parentElement.children].indexOf(tab));
+      if (tab) player.act("sample", [...tab.parentElement.children].indexOf(tab) - player.sampleIndex);
     });
     this.find(".pdd-figure").addEventListener("change", (event) => player.act("figure", event.target.value));
     this.find(".pdd-range").addEventListener("input", (event) => player.seek(Number(event.target.value)));

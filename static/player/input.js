@@ -78,7 +78,6 @@ export function actionFor(event) {
 export function belongsToControl(event) {
   const { target, key } = event;
   if (target.matches("select, input:not([type=range]), textarea")) return true;
-  if (target.matches("button")) return key === " " || key === "Enter";
-  if (target.matches("[role=tab]")) return key.startsWith("Arrow");
-  return false;
+  if (target.matches("[role=tab]") && key.startsWith("Arrow")) return true;
+  return target.matches("button") && (key === " " || key === "Enter");
 }

@@ -199,7 +199,8 @@ class View {
     const near = target.closest("[data-near]");
     if (!near) return;
     const entry = this.shown.nearest[near.dataset.near];
-    this.edit(edits.understand(this.draft, Number(near.dataset.unread), entry));
+    const place = this.draft.plan.unread.indexOf(this.shown.plan.unread[near.dataset.unread]);
+    if (place >= 0) this.edit(edits.understand(this.draft, place, entry));
   }
 
   /** Closes the panel, and the focus goes back to its chip. */

@@ -125,7 +125,8 @@ class Editor {
   /** Lengths that follow from the words, as the server worked them out. */
   measure(lengths) {
     if (!lengths || lengths.length !== this.story.beats.length) return;
-    this.story = edits.measured(this.story, lengths);
+    const story = edits.measured(this.story, lengths);
+    if (plain(story) !== plain(this.story)) this.hold(story);
     this.draw();
   }
 

@@ -37,6 +37,7 @@ async function go(what) {
       throw new Error(say("vote.unreachable"));
     });
     const reply = await answer.json().catch(() => ({}));
+    if (answer.status === 422 && what !== "next") return go("next"); // it is counted, or the pair is gone
     if (!answer.ok) throw new Error(reply.detail || say("vote.silent"));
     said.hidden = true;
     next(reply);

@@ -87,14 +87,66 @@ def test_the_part_that_is_touched_counts_by_any_of_its_names() -> None:
     assert sided.done and sided.unchecked == ("which side",), "one joint is all of the face"
 
 
-def test_jumps_are_counted() -> None:
-    def hop(start: int) -> Motion:
-        return lambda both: both[0, start : start + 10].__iadd__([0.0, 0.2, 0.0])  # type: ignore[return-value]
+def hop(start: int) -> Callable[[np.ndarray], None]:
+    return lambda both: both[0, start : start + 10].__iadd__([0.0, 0.2, 0.0])
 
+
+def test_jumps_are_counted() -> None:
     twice = duet(hop(30), hop(70))
     assert one(told("jump", times=2), twice).done
     thrice = one(told("jump", times=3), twice)
     assert thrice.done is False and thrice.measure == "done 2 times, not 3"
+
+
+def test_what_is_done_again_is_not_counted_over_all() -> None:
+    acts = (told("jump", times=2), told("jump", 2, times=3, order=(Relation(kind="after", act="1"),)))
+    motion = duet(*map(hop, range(5, 120, 24)))
+    assert [verdict.done for verdict in checked(plan(*acts), motion)] == [True, True]
+
+
+def test_the_side_of_what_both_hands_do_counts() -> None:
+    motion = duet(put("right_elbow", (-0.45, 0.2, 0.0)), put("right_wrist", (-0.2, 0.05, 0.1)))
+    assert one(told("hands-on-hips", side="right"), motion).done
+    assert not one(told("hands-on-hips", side="left"), motion).done and not one(told("hands-on-hips"), motion).done
+
+
+def hand_in_hand() -> Motion:
+    """Two who stand at arm's length, a's left hand in b's right one."""
+    motion = duet(gap=0.6)
+    motion.positions[1, :, index("right_wrist")] = motion.positions[0, :, index("left_wrist")]
+    return motion
+
+
+SUNK = duet(lambda both: both[0].__isub__([0.0, 0.55, 0.0]))
+BY_DEED: dict[str, Motion] = {
+    "somersault": SUNK,
+    "roll": SUNK,
+    "push-ups": SUNK,
+    "swing-sword": duet(shift((0, 0, 0), (0, 0, 12)), gap=20.0),
+    "waltz": hand_in_hand(),
+    "ring": hand_in_hand(),
+    "tie-up": hand_in_hand(),
+    "lift-spin": DOES["lift-up"],
+    "exit": DOES["walk-up"],
+    "enter": DOES["walk-away"],
+    "walk-ahead": DOES["walk-away"],
+    "shoot": duet(put("left_wrist", (0.6, 0.0, 0.0), base="left_shoulder")),
+}
+
+
+@pytest.mark.parametrize("name", BY_DEED)
+def test_a_rule_does_not_hold_on_something_near_it(name: str) -> None:
+    assert not one(told(name), BY_DEED[name]).done
+
+
+def test_who_leans_on_the_other_is_the_one_who_leans() -> None:
+    motion = duet(tilt(15, (0, 1)), gap=0.7)
+    assert one(told("let-lean"), motion).done and not one(told("let-lean", who="b"), motion).done
+
+
+def test_a_caption_names_the_part_that_is_touched_and_no_other() -> None:
+    assert one(told("groom", patient="b"), on_other("right_shoulder")).words == "A touches B"
+    assert one(told("groom", patient="b", part="cheek"), on_other("head")).words == "A touches B on the cheek"
 
 
 # ---- denied and unjudged ---------------------------------------------------------------------------------
@@ -495,6 +547,7 @@ def thrust(both: np.ndarray, metres: float, up: float = -0.1) -> None:
         ("kneel", for_a_while(kneeling), 0.1, 0.35),
         ("face-other", lambda degrees: duet(spin(degrees)), 90, 360),
         ("bump-into", lambda gap: duet(shift((0, 0, 0), (0, 0, 2 - gap))), 0.34, 0.44),
+        ("punch", lambda gap: apply(duet(gap=gap), lambda both: thrust(both, 0.4), frames=slice(40, 44)), 1.0, 3.0),
     ],
 )
 def test_a_rule_holds_beyond_its_limit_and_not_before_it(

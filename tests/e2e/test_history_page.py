@@ -114,7 +114,7 @@ def test_a_class_a_reaction_and_a_prediction_open_as_they_were(lab: str, open_pa
 def test_a_notebook_is_searched_written_in_and_taken_along(lab: str, open_page: Callable, tmp_path: Path) -> None:
     page = open_page(lab)
     page.set_default_timeout(SLOW)
-    prompts = ("They bow in the rehearsal.", "They salute in the rehearsal.")
+    prompts = (f"They bow in the rehearsal{', and they bow again' * 10}.", "They salute in the rehearsal.")
     for prompt in prompts:
         page.fill("#prompt textarea", prompt)
         page.click("#generate:enabled")
@@ -141,6 +141,19 @@ def test_a_notebook_is_searched_written_in_and_taken_along(lab: str, open_page: 
     page.click("[data-save]")
     expect(cards.first).to_contain_text("<b>The salute</b>")
     expect(cards.first).to_contain_text("Hands late")
+    page.click(".pdn-card >> nth=1 >> summary")
+    page.fill(".pdn-card >> nth=1 >> [data-field=tags]", "long")  # of a run whose prompt is longer than a name may be
+    page.click(".pdn-card >> nth=1 >> [data-save]")
+    expect(cards.nth(1).locator(".pdn-tags")).to_have_text("#long", timeout=SLOW)
+    asked = """(() => {
+        const notebook = document.querySelector(".pdn").notebook, limits = [], { tell } = notebook;
+        notebook.tell = ({ limit }) => limits.push(limit);
+        notebook.search(120);
+        notebook.act("favour");
+        Object.assign(notebook, { tell, limit: null });
+        return limits;
+    })()"""
+    assert page.evaluate(asked) == [120, 120], "what is done to a run leaves as many shown"
     page.fill("[data-find=words]", "rehearsal late salute")
     expect(cards).to_have_count(1, timeout=SLOW)
     page.fill("[data-find=words]", "rehearsal")

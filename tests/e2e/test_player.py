@@ -203,6 +203,11 @@ def test_several_samples_share_the_clock(player):
     until(page, "window.__pasdedeux.loops === 0")
     assert hook(page, "frame") == 40
     assert np.abs(np.array(hook(page, "positions")) - first).max() > 0.02
+    speed = page.evaluate("window.__pasdedeux.player.clock.speed")
+    for key in ("ArrowDown", "ArrowLeft"):
+        tabs.nth(2).press(key)
+        until(page, "window.__pasdedeux.loops === 0")
+    assert (hook(page, "frame"), page.evaluate("window.__pasdedeux.player.clock.speed")) == (40, speed)
 
 
 def test_user_text_stays_text(player):

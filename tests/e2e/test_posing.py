@@ -25,6 +25,15 @@ DIRECT = """() => {
         keepPoses: (frame, poses) => window.kept.push({ frame, poses }),
     });
 }"""
+OTHER = """(() => {
+    const { player } = window.__pasdedeux, tabs = document.querySelector(".pdd-tabs");
+    tabs.innerHTML = "<button role='tab'></button><button role='tab'></button>";
+    const { select } = player;
+    player.select = () => { throw Error("another sample"); };
+    tabs.lastChild.click();
+    Object.assign(player, { select });
+    tabs.replaceChildren();
+})()"""
 WRIST, ANKLE, HEAD = (SMPL22.index(name) for name in ("right_wrist", "left_ankle", "head"))
 FREE = SMPL22.index("left_wrist")
 """The hand that no other's lies over: the right ones shake each other."""
@@ -99,7 +108,8 @@ def test_a_hand_is_dragged_given_up_and_kept(still: Any) -> None:
         positions(still, 1),
         np.array(still.evaluate("window.__pasdedeux.player.everybody(60)[1].map(([z, x, y]) => [x, y, z])")),
     )
-    # Another moment is not shown before it is kept or given up.
+    # Another moment or sample is not shown before it is kept or given up.
+    still.evaluate(OTHER)
     still.keyboard.press("Home")
     still.locator(".pdd-range").fill("90")
     assert "Keep the pose or cancel" in still.locator(".pdd-posing output").inner_text()

@@ -197,6 +197,13 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
     assert story(page)["poses"] == []
     undo.click()
     assert comes_back(2.0667)
+    later = """(() => {
+        const { editor } = document.querySelector(".pds"), { beats } = editor.story;
+        editor.measure(beats.map((beat) => beat.auto + 1));
+        return [editor.story, editor.given].map((story) => JSON.stringify(story.poses));
+    })()"""
+    shown, sent = page.evaluate(later)
+    assert shown == sent, "what is sent is what is shown, also where beats were measured anew"
 
 
 def test_words_and_beats_follow_each_other(page: Any) -> None:

@@ -75,6 +75,17 @@ def test_all_looks_together_decide_as_soon_as_they_are_sure(
     assert abs(found.look.chances.sum() - 1) < 1e-9
 
 
+def test_less_than_a_second_is_looked_at_as_if_it_had_been_held(
+    agent: AgentPipeline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen, predict = list[int](), agent.eye.predictor.predict
+    monkeypatch.setattr(
+        agent.eye.predictor, "predict", lambda past, n: (seen.append(past.shape[1]), predict(past, n))[1]
+    )
+    (only,) = agent.eye.looks(waver(3.0).positions[:29])
+    assert (only.frame, seen) == (29, [30])
+
+
 SEEN = [look(45, 0.0, 0.95, 0.05), look(60, 0.0, 0.95, 0.05), look(75, 0.0, 0.95, 0.05)]
 """Looks after which the agent is sure of a wave at frame 60."""
 

@@ -9,6 +9,7 @@ import torch
 
 from acts import Plan
 from motion import SMPL22, Duet
+from motion.metrics import compare
 from motion.skeleton import ARMS
 from tests.inference.runs import positions, run
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
@@ -77,6 +78,32 @@ def test_parts_that_did_not_change_are_not_made_again(engine: Engine, story: Res
     # arms and feet give way smoothly, also to what comes next
     np.testing.assert_allclose(positions(other)[:, :60], positions(story)[:, :60], atol=1e-2)
     assert np.abs(positions(other)[:, 60:135] - positions(story)[:, 60:135]).max() > 0.01
+
+
+def test_a_short_window_is_not_taken_for_a_shorter_one(engine: Engine) -> None:
+    for seconds in (0.6, 0.8):
+        made = run(engine, SceneRequest(beats=(Beat("They wave.", seconds=seconds),), planned=False, **QUICK))
+        assert positions(made).shape[1] == round(30 * seconds)
+
+
+def test_a_pose_at_the_very_end_is_met(engine: Engine, story: Result) -> None:
+    pose = Pose("a", 2.0, positions(story)[0, 30])
+    made = run(engine, SceneRequest(beats=BEATS[:1], poses=(pose,), **QUICK))
+    np.testing.assert_allclose(positions(made)[0, -1], pose.positions, atol=0.03)
+
+
+def test_the_things_of_a_given_motion_are_said_to_be_gone(engine: Engine) -> None:
+    seated = run(engine, GenerateRequest(prompt="A sits down on a chair.", seconds=3.0, **QUICK)).duets[0]
+    assert isinstance(seated, Duet) and seated.things
+    went_on = run(engine, SceneRequest(beats=(Beat("They wave.", seconds=1.0),), motion=seated, **QUICK))
+    assert any("things of the given motion" in note for note in went_on.notes)
+
+
+def test_what_is_measured_of_a_sentence_that_is_given_whole_is_what_is_shown(engine: Engine) -> None:
+    asked = GenerateRequest(prompt="Two people hug.", seconds=2.0, split=False, planned=False, **QUICK)
+    made = run(engine, asked)
+    assert isinstance(duet := made.duets[0], Duet)
+    assert made.readouts[0]["after"] == compare(None, duet)["after"]
 
 
 def test_a_kept_window_is_not_taken_for_one_elsewhere(engine: Engine) -> None:

@@ -130,6 +130,13 @@ def test_the_acts_of_a_plan_take_the_place_of_the_words() -> None:
     assert [(row["act"], row["done"]) for row in rows] == [("raise-arm", True)]
 
 
+@pytest.mark.parametrize("left", [{"planned": False}, {"split": False}])
+def test_a_plan_that_nobody_would_follow_is_refused(left: dict[str, bool]) -> None:
+    plan = Plan(acts=(Act(id="1", act="bow", agents=("a",)),))
+    with pytest.raises(InputError, match="leave the plan out"):
+        GenerateRequest(prompt="They wave.", acts=plan, **left)
+
+
 # ---- with a network --------------------------------------------------------------------------------------
 QUICK = GenerateRequest(prompt="A falls down and B walks away.", seconds=2.0, steps=2, seed=3, tries=3)
 

@@ -14,11 +14,13 @@ from gradio_client import Client, handle_file
 from gradio_client.exceptions import AppError
 from PIL import Image
 
+from motion import InputError
 from motion.formats import read
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_takes
 from webdemo.inference.methods import method
 from webdemo.ui.components import film
+from webdemo.ui.components.exports import Shelf
 from webdemo.ui.page import build_page, launch_options
 
 from .stub_engine import StubEngine, walking
@@ -117,7 +119,9 @@ def test_one_animation_of_several_is_chosen_and_noted(client: Client, walkers: P
         client.predict(story="They bow.", motion=handle_file(robot), animation="run", api_name="/scene")
 
 
-def test_render_films_a_motion_file(client: Client, walkers: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_render_films_a_motion_file(
+    client: Client, walkers: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     path = client.predict(motion=handle_file(walkers), kind="gif", width=96, height=64, fps=5, api_name="/render")
     with Image.open(path) as picture:
         assert picture.size == (96, 64) and picture.n_frames == 60
@@ -130,6 +134,13 @@ def test_render_films_a_motion_file(client: Client, walkers: Path, monkeypatch: 
     ):
         with pytest.raises(AppError, match=sentence):
             client.predict(api_name="/render", **({"motion": handle_file(walkers)} | fields))
+    small = {"motion": handle_file(walkers), "width": 96, "height": 64, "fps": 5, "api_name": "/render"}
+    client.predict(kind=f"x{'/..' * 20}{tmp_path}/elsewhere.gif", **small)
+    assert not list(tmp_path.iterdir())
+    with monkeypatch.context() as full:
+        full.setattr(Shelf, "folder", lambda *_: (_ for _ in ()).throw(InputError("There is no room.")))
+        with pytest.raises(AppError, match=r"There is no room\."):
+            client.predict(kind="gif", **small)
     monkeypatch.setattr(film, "DRAWN_IN", 0.0)
     with pytest.raises(AppError, match="were drawn in"):
         client.predict(motion=handle_file(walkers), kind="gif", width=96, height=64, fps=5, api_name="/render")

@@ -152,6 +152,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     lost = await run_in_threadpool(lab.history.recover)
     if lost:
         log.warning("%d runs were interrupted when the server last stopped.", lost)
+    await run_in_threadpool(lab.studies.recover)
     tasks = [
         asyncio.create_task(_later(WARM_UP_AFTER, lab.health.keep_looking)),
         asyncio.create_task(_later(2 * WARM_UP_AFTER, _read_first)),

@@ -367,8 +367,9 @@ class RenderEndpoint(Endpoint):
 
     def render(self, motion: str, kind: str, look: str, theme: str, view: str, **asked: Any) -> str:
         """A film, a contact sheet or a plotly figure of a motion file."""
-        folder = self.page.shelf.folder()
+        folder = Path()
         try:
+            folder = self.page.shelf.folder()
             if not motion:
                 raise InputError("There is no motion: send a motion file, such as a .bvh.")
             kind, look, theme = kind or "mp4", look or Style.look, theme or Style.theme
@@ -380,7 +381,7 @@ class RenderEndpoint(Endpoint):
                 shown = read(
                     Path(motion), choices=reading_choices(asked | {"fps": asked["file_fps"]}), longest=films.LONGEST
                 )
-            name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
+            name, suffix = Path(motion).stem, Path(f"x.{kind.lower().lstrip('.')}").suffix  # no other folder
             out = folder / f"{file_name(name, {})}{suffix}"
             style = Style(look=look, theme=theme, names=suffix not in SHEETS)
             if suffix in SHEETS:

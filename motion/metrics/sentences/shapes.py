@@ -281,14 +281,14 @@ def sways(m: Motion, who: int, metres: float = 0.04, strokes: int = 2) -> Mask:
 
 @predicate
 def hands_on_hips(m: Motion, who: int, side: str = "both") -> Mask:
-    """The wrists are at the sides of the waist and the elbows further out; "any": one of them."""
+    """The wrists are at the sides of the waist and the elbows further out, both or of a side."""
     wrists, elbows, shoulders = (m.pair(who, part) for part in ("wrist", "elbow", "shoulder"))
     pelvis, left = m.joint(who, "pelvis"), m.left(who)
     at_waist = np.linalg.norm(wrists - pelvis, axis=-1) < 0.32
     signs = np.array([1.0, -1.0])[:, None]
     out = [signs * flat(points - pelvis, left) for points in (elbows, shoulders, wrists)]
     mask = at_waist & (out[0] > out[1] + 0.06) & (out[0] > out[2] + 0.06) & (out[2] > 0.15)
-    return np.any(mask, axis=0) if side == "any" else np.all(mask, axis=0)
+    return _of_side(mask, side)
 
 
 @predicate

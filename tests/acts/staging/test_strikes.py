@@ -36,6 +36,11 @@ def test_blows_are_read(words: str, bout: str, turns: str, goes_on: bool) -> Non
     assert all(move.near == BOUTS[bout].apart for move in found)
 
 
+def test_blows_are_as_many_as_the_words_say() -> None:
+    struck = score("A punches B twice, and B punches A three times.").strike
+    assert struck is not None and (struck.turns, struck.goes_on) == ("aabbb", False)
+
+
 def test_a_blow_that_ends_something_comes_late() -> None:
     late, at_once = score("They argue until A slaps B in the face.").strike, score("A slaps B.").strike
     assert late is not None and late.late and at_once is not None and not at_once.late

@@ -97,6 +97,8 @@ def test_a_thing_stays_with_the_giver_where_hands_never_meet():
 def test_a_thing_comes_into_the_hand_that_the_words_name_for_what_is_done_with_it():
     people = reaching()
     drinks = act("drink", "b", id="2", thing="cup", side="left", order=(Relation(kind="after", act="1"),))
+    unsaid = act("drink", "b", id="2", side="left", order=(Relation(kind="after", act="1"),))
+    assert len(things_of(people, act("hand-over", patient="b", thing="mug"), unsaid)) == 1, "from the mug"
     (cup,) = things_of(people, act("hand-over", patient="b", thing="cup"), drinks)
     assert np.linalg.norm(cup.places[115] - palms(people)[1, 0, 115]) < 0.05
 

@@ -10,6 +10,7 @@ import pytest
 
 from motion import SMPL22, Duet
 from motion.looks import SIZES, UNSAID
+from motion.metrics import compare
 from motion.sizes import floor_scale
 from tests.inference.runs import run
 from webdemo.inference import Engine, GenerateRequest, Result, SceneRequest
@@ -36,7 +37,7 @@ def test_a_girl_of_the_words_is_made_at_her_size(engine: Engine) -> None:
     assert duet.looks == ("man", "girl")
     np.testing.assert_allclose(bones(duet), (1.0, CHILD), atol=0.01)
     assert result.manifest["looks"] == duet.manifest["looks"] == ["man", "girl"]
-    assert result.readouts[0]["before"] is None
+    assert result.readouts[0]["before"] is None and result.readouts[0]["after"] == compare(None, duet)["after"]
     again = run(engine, GenerateRequest(prompt="A man waves at a girl.", seconds=3.0, **QUICK))
     np.testing.assert_array_equal(again.duets[0].positions, duet.positions)
 
@@ -84,6 +85,7 @@ def test_what_comes_next_of_a_girl_is_hers(engine: Engine, shipped: Engine) -> N
 def test_who_is_given_with_a_childs_bones_wears_a_childs_body(engine: Engine) -> None:
     duet = run(engine, GenerateRequest(prompt="A man waves at a girl.", seconds=3.0, **QUICK)).duets[0]
     bare = replace(duet, looks=UNSAID, things=(), grips=())
-    result = furnished(Result(duets=(bare,), manifest={}), [])
+    result = furnished(Result(duets=(bare,), manifest={}, readouts=({"after": {}},)), [])
     assert result.duets[0].looks == ("man", "girl")
+    assert result.readouts[0]["after"] == compare(None, result.duets[0])["after"]
     np.testing.assert_array_equal(result.duets[0].positions, bare.positions)

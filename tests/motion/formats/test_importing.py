@@ -1,11 +1,13 @@
 """What was found in a file is reported, and what the user knows about it is believed."""
 
+import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from motion import SMPL22, InputError, formats
+from motion import SMPL22, Clip, InputError, formats
+from motion.formats import importing
 from motion.formats.importing import import_motion, import_pair
 from motion.formats.recording import ImportChoices
 from motion.guesses import AXES, likely_skeleton, turn_of
@@ -71,6 +73,14 @@ def test_a_calibration_pose_that_the_motion_jumps_from_is_left_out(held: int, fp
     assert kept.motion.num_frames == 60 and kept.notes == ()
 
 
+def test_two_people_keep_one_clock_where_only_one_jumps_out_of_a_calibration_pose() -> None:
+    motion = marching(60)[0].astype(np.float32)
+    held = np.repeat(SMPL22.rest_positions()[None] + [0, 0.95, 0], 20, axis=0).astype(np.float32)
+    still = np.concatenate([held, np.repeat(held[:1], 60, axis=0)]) + np.float32([0, 0, 1.5])
+    found = import_motion(npy(np.stack([np.concatenate([held, motion]), still])), name="a.npy")
+    np.testing.assert_array_equal(found.motion.positions, [motion, still[20:]])
+
+
 @pytest.mark.parametrize(("choices", "says"), [({"up": "w"}, "choose x, y or z"), ({"fps": 0.0}, "not possible")])
 def test_wrong_choices_are_refused_in_words(choices: dict, says: str) -> None:
     with pytest.raises(InputError, match=says):
@@ -79,8 +89,14 @@ def test_wrong_choices_are_refused_in_words(choices: dict, says: str) -> None:
 
 def test_a_long_recording_is_refused_before_it_is_fitted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     bodies = swaying(2000)[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
-    monkeypatch.setattr(formats, "to_smpl", lambda motion: pytest.fail("fitted"))
+    for module in (formats, importing):
+        monkeypatch.setattr(module, "to_smpl", lambda motion: pytest.fail("fitted"))
     (tmp_path / "kinect.npy").write_bytes(npy(bodies))
+    with zipfile.ZipFile(tmp_path / "pair.zip", "w") as archive:
+        for name in ("a.npy", "b.npy"):
+            archive.writestr(name, npy(bodies))
+    with pytest.raises(InputError, match="lasts 67 s: cut it to 60 s or less"):
+        formats.read(tmp_path / "pair.zip", longest=60.0)
     with pytest.raises(InputError, match=r"^kinect\.npy lasts 67 s: cut it to 60 s or less\."):
         formats.read(tmp_path / "kinect.npy", longest=60.0)
 
@@ -95,9 +111,10 @@ def test_seventeen_joints_are_of_the_order_in_which_they_are_a_body(name: str, t
     assert likely_skeleton(positions) == (SKELETONS[name], None)
 
 
+@pytest.mark.parametrize("suffix", [".npz", ".bvh"])
 @pytest.mark.parametrize("frames", [(30, 40), (40, 30)])
-def test_two_files_are_as_long_as_the_shorter(frames: tuple[int, int], tmp_path: Path) -> None:
-    paths = [tmp_path / f"P{number}.npy" for number in (1, 2)]
+def test_two_files_are_as_long_as_the_shorter(frames: tuple[int, int], suffix: str, tmp_path: Path) -> None:
+    paths = [tmp_path / f"P{number}{suffix}" for number in (1, 2)]
     for path, count in zip(paths, frames, strict=True):
-        path.write_bytes(npy(swaying(count)))
+        formats.write(Clip(swaying(count), 30.0), path)
     assert import_pair(*paths).motion.num_frames == 30

@@ -142,6 +142,14 @@ def test_a_deleted_study_is_gone(studies: Studies) -> None:
         studies.question(study.key)
 
 
+def test_what_a_killed_process_left_is_gone_at_the_next_start(studies: Studies) -> None:
+    kept = new(studies)
+    (studies.folder / "half").mkdir()
+    (studies.folder / "half" / "0.npz").write_bytes(b"half")
+    studies.recover()
+    assert [path.name for path in studies.folder.iterdir()] == [kept.id]
+
+
 def test_what_makes_no_study_is_a_sentence_and_leaves_nothing(studies: Studies) -> None:
     for question in ("  ", "?" * 301):
         with pytest.raises(InputError, match="write 1 to 300"):

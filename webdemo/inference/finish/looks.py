@@ -34,6 +34,7 @@ _ALIKE = 0.02
 """Share of an adult's thigh by which a child's bones may differ from those of a child's body."""
 _EASES = 15
 """Frames over which people come from where they are in the kept frames to where they were made."""
+_WITHOUT_THINGS = "The things of the given motion are not shown: name them in the words."
 _A_CHILD = 0.87
 """Length of the legs, as a share of SMPL22's, below which a pose is one of a child."""
 
@@ -81,18 +82,22 @@ def _at_their_sizes(result: Result, looks: tuple[str, str]) -> Result:
     Of people who are smaller than they were made only what is shown is measured.
     """
     if looks == UNSAID:
-        return replace(result, duets=tuple(map(_by_their_bones, result.duets)))
-    duets, readouts = list(result.duets), list(result.readouts)
-    a, b = (size_of(look) for look in looks)
+        return _measured(result, tuple(map(_by_their_bones, result.duets)))
+    duets, sizes = list(result.duets), _sizes(looks)
     for i, duet in enumerate(duets):
-        if not _is_undressed(duet):
-            continue
-        if (a, b) != (1.0, 1.0):
-            duet = duet.with_positions(at_sizes(duet.positions, (a, b)))
-            readouts[i : i + 1] = [{**each, **compare(None, duet)} for each in readouts[i : i + 1]]
-        duets[i] = replace(duet, looks=looks)
-    manifest = {**result.manifest, "looks": list(looks)}
-    return replace(result, duets=tuple(duets), readouts=tuple(readouts), manifest=manifest)
+        if _is_undressed(duet):
+            sized = duet if sizes == (1.0, 1.0) else duet.with_positions(at_sizes(duet.positions, sizes))
+            duets[i] = replace(sized, looks=looks)
+    return _measured(replace(result, manifest={**result.manifest, "looks": list(looks)}), tuple(duets))
+
+
+def _measured(result: Result, duets: tuple[Duet | Clip, ...]) -> Result:
+    """A result of these duets, of which those with a child are measured as they are shown."""
+    readouts = list(result.readouts)
+    for i, duet in enumerate(duets[: len(readouts)]):
+        if _is_on_bodies(duet) and _sizes(duet.looks) != (1.0, 1.0):
+            readouts[i] = {**readouts[i], **compare(None, duet)}
+    return replace(result, duets=duets, readouts=tuple(readouts))
 
 
 def _by_their_bones(duet: Duet | Clip) -> Duet | Clip:
@@ -141,12 +146,14 @@ def enlarged(request: Any) -> Any:
 def as_given(result: Result, request: Any) -> Result:
     """A result that goes on from a given motion, whose people look as they did, at the sizes that they had."""
     given = getattr(request, "motion", None)
+    if isinstance(given, Duet) and given.things:
+        result = replace(result, notes=(*result.notes, _WITHOUT_THINGS))
     if not isinstance(given, Duet) or given.looks == UNSAID:
         return result
     if isinstance(request, PredictRequest):
         return _predicted(result, given, request)
     kept, made = request.kept(given), request.made
-    return replace(result, duets=tuple(_as_given(duet, given, kept, made) for duet in result.duets))
+    return _measured(result, tuple(_as_given(duet, given, kept, made) for duet in result.duets))
 
 
 def _predicted(result: Result, given: Duet, request: PredictRequest) -> Result:

@@ -89,17 +89,19 @@ class Eye:
         self.predictor, self.digest = predictor, source.digest
 
     def looks(self, positions: Array) -> list[Look]:
-        """Every moment at which the agent looks at a person (T, 22, 3), in metres at 30 fps; T is 30 or more.
+        """Every moment at which the agent looks at a person (T, 22, 3), in metres at 30 fps.
 
-        A look depends on the second before it and on nothing after.
+        A look depends on the second before it and on nothing after; of less than a second the first frame is held.
         """
+        missing = max(OBSERVED - len(positions), 0)
+        positions = np.pad(positions, ((missing, 0), (0, 0), (0, 0)), mode="edge")
         frames = list(range(FIRST, len(positions) + 1, BETWEEN)) or [len(positions)]
         seen = np.stack([positions[frame - OBSERVED : frame] for frame in frames]).astype(np.float64)
         predicted = self.predictor.predict(seen, PREDICTED)
         local = to_last_pose(np.concatenate([seen, predicted], axis=1), OBSERVED - 1)[0]
         with torch.no_grad():
             chances = self.recogniser(sampled(torch.from_numpy(local).float())).softmax(-1)
-        return [Look(frame, row) for frame, row in zip(frames, chances.double().numpy(), strict=True)]
+        return [Look(frame - missing, row) for frame, row in zip(frames, chances.double().numpy(), strict=True)]
 
     def decide(self, looks: list[Look]) -> Decision:
         """Combines looks until the agent is sure.

@@ -21,7 +21,8 @@ from models.intergen.released import ReleasedInterGen, load_released
 from models.text import MiniLM
 from models.text.clip import find_vocabulary
 from models.weights_io import load_network
-from motion import FPS, Clip, Duet, stacked_positions
+from motion import FPS, Duet, stacked_positions
+from motion.metrics import compare
 from motion.vectors import Array
 from webdemo.inference.finish.cleanup import clean_person, finish_of, in_touch
 from webdemo.inference.own.entries import Entry
@@ -103,7 +104,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
                     event = replace(event, readouts=tuple({**r, "planned": 0.0} for r in event.readouts))
                     if request.cleanup:
                         finish = plan.finishes[0] if plan.finishes else BeatFinish()
-                        event = replace(event, duets=tuple(_in_touch(duet, finish) for duet in event.duets))
+                        event = _in_touch(event, finish)
                 own, said = plan.to_dict(), plan.acts[0].notes
                 whole = {name: own[name] for name in ("acts", "beats")}
                 kept = own | event.manifest.get("plan", {}) | whole
@@ -158,12 +159,16 @@ def _unsplit(plan: KeptPlan, planned: bool) -> KeptPlan:
     return replace(plan, alone=of_each(plan.acts[0].acts, lexicon()), finishes=finishes)
 
 
-def _in_touch(duet: Duet | Clip, finish: BeatFinish) -> Duet | Clip:
-    """A duet whose hands meet, and whose bodies are not in each other."""
-    if not isinstance(duet, Duet):
-        return duet
-    every = np.ones(duet.num_frames)
-    return duet.with_positions(in_touch(duet.positions, every, every * finish.reaching, every * finish.held))
+def _in_touch(result: Result, finish: BeatFinish) -> Result:
+    """Duets whose hands meet, and whose bodies are not in each other, and what is measured of them."""
+    duets, readouts = list(result.duets), list(result.readouts)
+    for i, duet in enumerate(result.duets):
+        if isinstance(duet, Duet):
+            every = np.ones(duet.num_frames)
+            met = in_touch(duet.positions, every, every * finish.reaching, every * finish.held)
+            duets[i] = moved = duet.with_positions(met)
+            readouts[i] = {**readouts[i], **compare(None, moved), "before": readouts[i]["before"]}
+    return replace(result, duets=tuple(duets), readouts=tuple(readouts))
 
 
 class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):

@@ -327,7 +327,8 @@ class Setting:
     def key(self, request: SceneRequest, words: str, seed: int, digest: str) -> str:
         """A hash of all that the window is made from: the request's settings, the words, the network, what is given."""
         settings = {**request.sampling, "samples": 1, "tries": 1, "seed": seed}
-        told = [digest, words, settings, self.plan.alone, self.frames, self.window.past, self.strictness]
+        frames = (self.frames, self.window.past, self.window.stop - self.window.start)
+        told = [digest, words, settings, self.plan.alone, *frames, self.strictness]
         sha256 = hashlib.sha256(json.dumps(told).encode())
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places

@@ -130,6 +130,10 @@ class GenerateRequest(SamplingRequest):
             object.__setattr__(self, "acts", plan_of(self.acts))
             if not self.prompt.strip():
                 object.__setattr__(self, "prompt", in_words(self.acts))
+        if self.acts is not None and not (self.split and self.planned and "scene" in method.tasks):
+            raise InputError(
+                "A plan of acts is only followed in beats: leave the plan out, or split and plan the words."
+            )
         prompt_of(self.prompt, needed=True)
         object.__setattr__(self, "seconds", number("Length", self.seconds, *method.seconds, " seconds"))
         self._check(method)

@@ -60,7 +60,7 @@ class Pose:
             )
         if np.abs(positions[0, [0, 2]]).max() > FLOOR:
             raise InputError(f"The pose of person {self.person} at {self.seconds:g} s is outside the floor.")
-        return replace(self, positions=positions.round(5))
+        return replace(self, seconds=min(self.seconds, total - 1 / FPS), positions=positions.round(5))
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON."""

@@ -6,7 +6,6 @@ import json
 import logging
 import re
 import secrets
-import shutil
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -26,7 +25,7 @@ from webdemo.view.thumbnail import thumbnail
 
 from .database import Run, Share, changed, entry_of, fields_of, locked, owned, sentence_of, sentences
 from .folders import whole
-from .storage import ROW_BYTES, RUN_BYTES, Storage, forget, weight_of
+from .storage import ROW_BYTES, RUN_BYTES, Storage, forget, sweep, weight_of
 
 log = logging.getLogger(__name__)
 
@@ -146,16 +145,8 @@ class History:
         lost = lost.values(state="interrupted", message="The server stopped while this ran: run it again.")
         with self.database.session.begin() as session:
             count = changed(session, lost)
-        self._sweep()
+        sweep(self.database, Run, self.folder)
         return count
-
-    def _sweep(self) -> None:
-        """Removes files that belong to no run, such as those of runs that a killed process was removing."""
-        with self.database.session() as session:
-            known = set(session.scalars(select(Run.id)))
-        for path in self.folder.iterdir():
-            if path.is_dir() and path.name not in known:
-                shutil.rmtree(path, ignore_errors=True)
 
     # ---- for those who know an id or a link ------------------------------------------------------
 

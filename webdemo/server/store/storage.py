@@ -202,6 +202,15 @@ class Storage:
             self.scratch.clean(keep, self.scratch_bytes)
 
 
+def sweep(database: Database, table: type[Run] | type[Study], folder: Path) -> None:
+    """Removes folders that belong to no row, such as those that a killed process was writing or removing."""
+    with database.session() as session:
+        known = set(session.scalars(select(table.id)))
+    for path in folder.glob("*"):
+        if path.is_dir() and path.name not in known:
+            shutil.rmtree(path, ignore_errors=True)
+
+
 def weight_of(run: Run, folder: Path) -> int:
     """Bytes of a run: its files, its request and its outcome, and what is written about it."""
     files = sum(path.stat().st_size for path in folder.iterdir())

@@ -26,7 +26,7 @@ from webdemo.server.audit import audit
 from webdemo.study import FIRST, SECOND, TIE, Pair, StudyEntry, as_shown
 
 from .database import Study, Vote, locked, owned, sentences
-from .storage import Storage
+from .storage import Storage, sweep
 
 LONGEST_QUESTION, LONGEST_NAME = 300, 100
 MOST_VOTES = 20_000
@@ -55,6 +55,10 @@ class Studies:
 
     def __init__(self, storage: Storage, folder: Path) -> None:
         self.storage, self.database, self.folder = storage, storage.database, folder
+
+    def recover(self) -> None:
+        """Removes what an earlier process left half-written."""
+        sweep(self.database, Study, self.folder)
 
     # ---- the owner -------------------------------------------------------------------------------
 
