@@ -18,7 +18,6 @@ import app
 from motion.formats import read, read_pair
 from tests.inference import conftest as tiny
 from webdemo import cli
-from webdemo.cli import service
 from webdemo.inference import engine, methods
 
 weights = tiny.weights
@@ -235,11 +234,12 @@ def test_app_takes_the_options_of_serve(capsys: pytest.CaptureFixture[str], monk
         app.main(["--help"])
 
 
-def test_a_reader_who_has_gone_is_no_traceback(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    def info(options: Any) -> dict[str, Any]:
+@pytest.mark.parametrize("place", ["webdemo.cli.service.info", "builtins.print"])
+def test_a_reader_who_has_gone_is_no_traceback(run: Run, monkeypatch: pytest.MonkeyPatch, place: str) -> None:
+    def gone(*_: Any, **__: Any) -> None:
         raise BrokenPipeError
 
-    monkeypatch.setattr(service, "info", info)
+    monkeypatch.setattr(place, gone)
     assert run("info") == (141, "", "")
 
 

@@ -70,6 +70,15 @@ def test_one_person_of_a_file_is_trimmed_and_answered(
     np.testing.assert_array_equal(duet.a.positions, standing(120, x=2.0).positions[30:90])
 
 
+def test_an_actor_is_as_long_as_the_method_takes(
+    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(Duet(standing(600), standing(600, x=2.0)), tmp_path / "long.npz")
+    words = ("--actor", tmp_path / "long.npz", "--person", "a", "--out", tmp_path / "answer.npz")
+    assert react(capsys, *words, "--model", "interformer")[0] == 0 and asked[0].actor.num_frames == 600
+    assert react(capsys, *words, "--model", "intergen")[0] == 2 and len(asked) == 1
+
+
 def test_a_model_comes_with_its_own_number_of_steps(
     pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -102,8 +102,9 @@ def _is_aside(token: Token, cast: Cast) -> bool:
     verb = token.head.head if token.dep_ == "pobj" else token
     objects = (child for child in verb.children if child.dep_ in ("dobj", "obj"))
     thing = cast.thing
-    named = thing is not None and any(o.lemma_.lower() in ("it", thing.lemma) for o in objects)
-    return named and thing.kind == "thing"
+    if thing is None or thing.kind != "thing":
+        return False
+    return any(each.lemma_.lower() in ("it", thing.lemma) for each in objects)
 
 
 def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:

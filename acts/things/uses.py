@@ -58,7 +58,7 @@ def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float]) -> list
         start, stop: frames.
         lengths: seconds of the beats into which the sentence was split, where it was.
     """
-    uses = []
+    uses = list[Use]()
     for act, first, last in act_frames(plan, start, stop, lengths):
         words = plan.text(act.words)
         each = (read(act, words, first, last) for read in (_use, _fixture, _door))

@@ -49,9 +49,15 @@ export function mount(element, props, watch, trigger) {
   };
   const load = () => {
     const { acts, runs } = props.known ?? { acts: [], runs: [] };
+    const seen = new Map();
+    const once = (name) => {
+      const count = (seen.get(name) ?? 0) + 1;
+      seen.set(name, count);
+      return count > 1 ? `${name} (${count})` : name;
+    };
     entries = [
       ...acts.map(([name, sentence]) => ({ kind: say("finder.act"), name, more: sentence })),
-      ...runs.map(([run, name, more]) => ({ kind: say("finder.run"), name, more, run })),
+      ...runs.map(([run, name, more]) => ({ kind: say("finder.run"), name: once(name), more, run })),
     ];
     list.replaceChildren(...entries.map(({ kind, name, more }) => Object.assign(node("option"), { value: name, label: `${kind}: ${more}` })));
   };

@@ -29,6 +29,7 @@ export class Webcam {
   async next() {
     const { video } = this;
     while (!this.over) {
+      if (!video.srcObject?.active) return null; // it was unplugged
       const wait = FASTEST - (performance.now() - (this.at ?? -FASTEST));
       if (wait > 0) await nap(wait);
       if (video.readyState >= 2 && video.currentTime !== this.latest) break;
@@ -66,13 +67,12 @@ export class Person {
     Object.assign(this, { motion: sample.motion, fps: sample.fps, place: 0 });
   }
 
-  async begin() {
-    this.began = performance.now();
-  }
+  async begin() {}
 
   /** The next poses, from one frame to another; null after the last ones. */
   async next() {
     const { frames } = this.motion;
+    this.began ??= performance.now(); // once the server hears
     if (this.over || this.place >= frames) return null;
     const last = Math.min(this.place + BATCH, frames);
     const due = this.began + (1000 * (last - 1)) / this.fps;

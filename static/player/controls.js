@@ -87,13 +87,13 @@ export class Controls {
     });
   }
 
-  /** The overlay while something is being made; "" takes it away. `progress` is 0..1 or null. */
+  /** The overlay while something is being made; "" takes it away. `progress` is 0..1, or less for none. */
   setBusy(text, progress = null) {
     this.find(".pdd-busy").hidden = !text;
     this.root.setAttribute("aria-busy", String(Boolean(text)));
     this.find(".pdd-busy-text").textContent = text || "";
     const meter = this.find(".pdd-meter");
-    meter.hidden = !Number.isFinite(progress);
+    meter.hidden = !(Number.isFinite(progress) && progress >= 0);
     meter.firstElementChild.style.width = `${100 * Math.min(Math.max(progress || 0, 0), 1)}%`;
   }
 

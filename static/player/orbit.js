@@ -80,8 +80,8 @@ export class Orbit {
   }
 
   /** Takes what is to be followed in view at once, where the people too are elsewhere at once. */
-  cut(wanted) {
-    if (!this.following || !wanted) return;
+  cut(wanted, always = false) {
+    if (!wanted || !(this.following || always)) return;
     this.jump(wanted.targets);
     if (this.framing) this.distance = wanted.distance;
   }

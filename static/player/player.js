@@ -81,8 +81,10 @@ export class Player {
       this.root.dataset.state = "empty";
       this.strip.load(null);
       this.focus = null;
-      this.grid.load(null);
+      this.find(".pdd-back").hidden = true;
+      const reshaped = this.grid.load(null);
       this.pane.load(null);
+      if (reshaped) this.resize();
       this.refresh();
       return;
     }
@@ -126,7 +128,7 @@ export class Player {
     if (this.focus === cell || !this.data?.samples[this.sampleIndex].cells) return;
     this.focus = cell;
     this.select(this.sampleIndex);
-    this.orbit.cut(this.framing.wanted());
+    this.orbit.cut(this.framing.wanted(), true); // the others stand elsewhere
   }
 
   // ---- actions -------------------------------------------------------------------------------

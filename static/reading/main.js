@@ -99,7 +99,10 @@ class View {
     if (!this.asking.typed(text)) return;
     clearTimeout(this.making);
     this.fold(false);
-    if (this.edited) this.note = say("reading.dropped");
+    if (this.edited) {
+      this.note = say("reading.dropped");
+      this.asking.asked = ""; // the words are read again, be they the same
+    }
     this.edited = false;
     this.chosen = null;
     this.hold();
@@ -122,9 +125,10 @@ class View {
 
   /** A plan as the server shows it. What is given unasked, with a result from the history, has no number. */
   answer(shown) {
-    if (!shown || shown === this.shown || !this.asking.answers(shown)) return;
+    if (!shown || shown === this.shown || shown === this.refused || !this.asking.answers(shown)) return;
     if (shown.number != null && shown.number !== this.number) return;
     if (shown.error && this.edited) {
+      this.refused = shown;
       this.note = shown.error;
       this.draft = this.shown;
       this.edited = this.shown.edited;

@@ -92,17 +92,19 @@ class Editor {
     }
     this.keepPast();
     this.story = next;
+    this.sent = plain(next);
     this.bound();
     this.draw();
   }
 
   /** The beats, paths and poses that the text over the line gives, unless they were changed since it was written. */
   lay(laid) {
-    if (!laid || laid === this.laid) return;
-    this.laid = laid;
+    if (!laid || laid.at === this.laid) return;
+    const { at, ...beats } = laid;
+    this.laid = at;
     if (this.story.ahead) return;
     this.keepPast();
-    this.hold(edits.read({ ...this.story, ...laid, span: null }));
+    this.hold(edits.read({ ...this.story, ...beats, span: null }));
     this.bound();
     this.draw();
   }

@@ -38,12 +38,17 @@ def test_an_act_and_a_run_are_found_by_keyboard_and_an_example_by_one_press(
     expect(page.locator("#finder dialog")).to_be_hidden()
     expect(page.locator("#prompt textarea, #prompt input")).to_have_value(re.compile("wrestl"))
 
-    page.locator("button#generate").click()
+    for _ in range(2):
+        page.locator("button#generate").click()
+        expect(page.locator("button#generate")).to_be_disabled()
+        expect(page.locator("button#generate")).to_be_enabled()
     expect(page.locator("#status .pd-done")).to_be_visible()
 
     page.keyboard.press("Control+k")
     offered = f"[...document.querySelectorAll('{OFFERED}')]"
     until(page, f"{offered}.some(o => o.label.startsWith('Run: ') && /wrestl/i.test(o.value + o.label))")
+    names = page.evaluate(f"{offered}.filter(o => o.label.startsWith('Run: ')).map(o => o.value)")
+    assert len(names) > 1 and len({*names}) == len(names), "each run can be picked"
     page.keyboard.type("run wrestl")
     page.keyboard.press("Enter")
     page.wait_for_url("**/?run=*")

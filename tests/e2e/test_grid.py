@@ -75,8 +75,11 @@ def test_nine_results_share_one_context_and_one_opens_large(
 
     box = page.locator("#player .pdd-cell").nth(4).bounding_box()
     assert box
+    page.evaluate(f"{PLAYER}.orbit.following = false")
     page.mouse.click(box["x"] + 30, box["y"] + 30)
     until(page, f"{PLAYER}.focus === 4")
+    target, wanted = page.evaluate(f"[{PLAYER}.orbit.targets[0], {PLAYER}.framing.wanted().targets[0]]")
+    np.testing.assert_allclose(target, wanted, atol=0.5)  # also where the camera does not follow
     expect(page.locator("#player .pdd-caption").first).to_have_text("damping 0.4 · seed 2")
     expect(page.locator("#player .pdd-strip")).to_be_visible()
     page.click("#player .pdd-back")
@@ -87,3 +90,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
         page.click("#download-csv")
     download.value.save_as(tmp_path / "grid.csv")
     assert len((tmp_path / "grid.csv").read_text().splitlines()) == 10
+    page.evaluate(f"{PLAYER}.enlarge(4)")
+    expect(page.locator("#player .pdd-back")).to_be_visible()
+    page.evaluate(f"{PLAYER}.load(null)")
+    expect(page.locator("#player .pdd-back")).to_be_hidden()

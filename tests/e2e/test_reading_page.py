@@ -112,3 +112,23 @@ def test_a_plan_is_edited_and_made(lab: str, open_page: Callable[..., Page]) -> 
     expect(reading.locator(".pdr-badge")).to_be_hidden()
     expect(chips).to_have_count(4)
     expect(reading.locator(".pdr-notes")).to_contain_text("Your edits were dropped")
+    # Also where they are the same again before they were read.
+    chips.nth(3).focus()
+    page.keyboard.press("Delete")
+    expect(chips).to_have_count(3)
+    expect(reading.locator(".pdr-badge")).to_be_visible()
+    page.locator("#prompt textarea").press("End")
+    page.locator("#prompt textarea").press_sequentially(" ")
+    page.keyboard.press("Backspace")
+    expect(chips).to_have_count(4)
+    # An edit that the server refuses is taken back, and it is said why.
+    chips.nth(3).focus()
+    page.keyboard.press("Delete")
+    expect(reading.locator(".pdr-badge")).to_be_visible()
+    refused = """(() => {
+        const { view } = document.querySelector("#reading .pdr"), { text } = view.asking;
+        view.sync({ text, shown: { text, number: view.number, edited: true, error: "Too many acts." } });
+        return [view.note, view.draft.plan.acts.length];
+    })()"""
+    note, acts = page.evaluate(refused)
+    assert note == "Too many acts." and acts >= 3

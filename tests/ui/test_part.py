@@ -10,7 +10,7 @@ from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.live import LivePanel
 from webdemo.ui.components.notebook import NotebookView
 from webdemo.ui.components.part import Part, scoped
-from webdemo.ui.components.player import MotionPlayer
+from webdemo.ui.components.player import MotionPlayer, busy, show
 from webdemo.ui.components.reading import Reading
 from webdemo.ui.components.story import StoryLine
 
@@ -24,6 +24,11 @@ def test_values_pass_unchanged_and_the_template_is_constant(part: type[Part]) ->
     assert made.preprocess(value) is value and made.postprocess(value) is value
     assert made.html_template == part.template.read_text(encoding="utf-8")
     assert set(made.props) == set(part.declared)
+
+
+def test_what_the_player_is_told_arrives() -> None:
+    """Gradio leaves None out of an update, and the page keeps what it had."""
+    assert None not in busy("Starting …").values() and show(None)["progress"] is not None
 
 
 def test_a_part_is_given_to_the_module_beside_its_template() -> None:

@@ -57,6 +57,9 @@ def test_a_gif_moves_and_goes_round(tmp_path):
     with Image.open(path) as picture:
         assert picture.size == SMALL and picture.n_frames == 10  # 0.4 s at 25 frames a second
         assert picture.info["duration"] == 40 and picture.info["loop"] == 0
+    slower = film.write_film([Pane(DUET)], tmp_path / "slower.gif", size=SMALL, fps=15)
+    with Image.open(slower) as picture:
+        assert (picture.info["duration"], picture.n_frames) == (70, 6)  # hundredths of a second are whole
 
 
 def test_panes_stand_side_by_side_under_their_captions(tmp_path):

@@ -64,13 +64,15 @@ def metadata(path: Path) -> dict[str, str]:
 
 
 def restore_part(path: Path, name: str, module: nn.Module) -> None:
-    """Loads one module from a checkpoint of any run.
+    """Loads one module from a checkpoint of any run; only one of the two may have a reader of touches.
 
     Raises InputError for a damaged file and for a module of other sizes.
     """
     try:
         tensors, _ = read_tensors(path, "give a folder of weights or a run's last.safetensors.")
-        module.load_state_dict(_part(tensors, name))
+        read = module.load_state_dict(_part(tensors, name), strict=False)
+        if wrong := [key for key in (*read.missing_keys, *read.unexpected_keys) if not key.startswith("touch_reader.")]:
+            raise RuntimeError(wrong)
     except RuntimeError as error:
         raise InputError(f"{path} holds a network of other sizes: give the settings it was trained with.") from error
 

@@ -27,6 +27,7 @@ import numpy as np
 from motion import FPS, InputError
 from motion.formats import ImportChoices, read_pair
 from motion.kinematics import project_to_skeleton
+from motion.metrics.sentences import kept_out
 from motion.transforms import canonicalize, resample, turn
 from motion.vectors import direction, floor_points
 from training.core.shell import exit_code
@@ -75,7 +76,8 @@ def read_annotated(data: Path, second_acts: Collection[str] = ()) -> Iterator[Sc
         # The processed files are taken as 30 frames a second, as their authors do; the raw ones have 59.94.
         choices = ImportChoices(fps=FPS if files[0].suffix == ".npy" else None)
         people = _people(files[::-1] if name in second_acts else files, choices)
-        sentences = [line.strip() for line in _lines(text) if line.strip()][:_MOST_SENTENCES]
+        lines = (line.strip() for line in _lines(text))
+        sentences = [line for line in lines if line and not kept_out(line)][:_MOST_SENTENCES]
         if people and sentences and len(people[0]) >= SHORTEST:
             scene = canonicalize(np.stack(people))
             yield Scene(scene, "annotated", (source,), splits.get(name, "train"), captions=sentences)

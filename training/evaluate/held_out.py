@@ -47,11 +47,14 @@ def load_model(path: Path, data: Data) -> CompactInterGen:
 
 
 @torch.no_grad()
-def errors(model: CompactInterGen, data: Data, kind: str, batches: int) -> Tensor:
-    """(timesteps,) mean errors; ``kind`` is a name of :data:`GIVEN`."""
+def errors(model: CompactInterGen, data: Data, kind: str, batches: int, std: Tensor) -> Tensor:
+    """(timesteps,) mean errors in units of ``std`` (70,), whatever those of the model are.
+
+    ``kind`` is a name of :data:`GIVEN`.
+    """
     schedule, layout = NoiseSchedule(), data.scenes.layout
     data.mean, data.std = model.mean, model.std
-    weights = feature_weights(Settings().root_weight, layout)
+    weights = feature_weights(Settings().root_weight, layout) * (model.std / std).repeat(layout.knots_per_token)
     total = torch.zeros(len(TIMESTEPS))
     for step in range(batches):
         batch = data.batch(step)
@@ -96,10 +99,11 @@ def _run(options: argparse.Namespace) -> None:
     if len(scenes.rows) < settings.batch:
         raise InputError(f"The test split holds {len(scenes.rows)} scenes: build a corpus with 16 or more.")
     data = (Data if options.alone else OneSentence)(scenes, settings, options.cache, "cpu")
+    std = data.std
     for path in options.models:
         model = load_model(path, data)
         for kind in options.given:
-            by_timestep = errors(model, data, kind, options.batches)
+            by_timestep = errors(model, data, kind, options.batches, std)
             by_step = {str(t): round(float(e), 4) for t, e in zip(TIMESTEPS, by_timestep, strict=True)}
             print(json.dumps({"model": path.name, "given": kind} | by_step), flush=True)
 

@@ -61,8 +61,11 @@ def main(argv: list[str] | None = None) -> int:
     options = parser.parse_args(argv)
 
     def job() -> None:
+        files = sorted(options.motions.rglob("*.npy"))
+        if len({path.parent for path in files}) > 1:
+            raise InputError(f"{options.motions} holds motions of several settings: name one of its folders.")
         kept: dict[str, list[Array]] = defaultdict(list)
-        for path in sorted(options.motions.rglob("*.npy")):
+        for path in files:
             kept[path.stem.rpartition("-")[0]].append(np.load(path, allow_pickle=False).astype(np.float64))
         seeds, sentences = listening(list(kept.values()))
         print(

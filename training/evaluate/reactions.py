@@ -15,6 +15,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,6 @@ from training.core.shell import add_options, exit_code, write_scores
 from training.corpus.pairs import Pair, load_pairs
 from training.evaluate.deep_gru import accuracy, deep_features, fit, measured
 from webdemo.inference import Engine, ReactRequest, Result
-from webdemo.inference.methods import WEIGHTS
 from webdemo.inference.methods import method as known_method
 from webdemo.inference.pipelines.nearest import Bank
 
@@ -208,11 +208,10 @@ def table(scores: dict[str, Any]) -> str:
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    installed = [name for name, chosen in METHODS.items() if known_method(chosen["model"]).installed(WEIGHTS)]
     parser = argparse.ArgumentParser(description="Judge reactions by a classifier of recorded ones.")
     add_options(parser, "pairs", "cache", "out", "table", "weights")
     parser.add_argument("--datasets", nargs="+", choices=list(DATASETS), default=list(DATASETS))
-    parser.add_argument("--methods", nargs="*", choices=list(METHODS), default=installed)
+    parser.add_argument("--methods", nargs="*", choices=list(METHODS), help="those whose weights are there")
     parser.add_argument("--seeds", type=int, default=3, help="classifiers, each with a seed of its own")
     parser.add_argument("--samples", type=int, default=3, help="reactions to every actor")
     options = parser.parse_args(argv)
@@ -221,13 +220,17 @@ def main(argv: list[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> None:
     engine, scores, pairs = Engine(options.weights), {}, load_pairs(options.data, options.cache)
+    installed = [name for name, chosen in METHODS.items() if _is_installed(chosen["model"], options.weights)]
+    methods = installed if options.methods is None else options.methods
     for dataset in options.datasets:
         train, test, classes = recorded([pair for pair in pairs if pair.dataset == dataset])
         made = {"Zero velocity": [[zero_velocity(reaction) for reaction in test]]}
-        nearest: Any = engine.pipeline("nearest")
-        nearest.bank = Bank([reaction.people for reaction in train])
-        made["Nearest recorded reaction, not finished"] = [[drafted(nearest.bank, one.people) for one in test]]
-        for method in options.methods:
+        bank = Bank([reaction.people for reaction in train])
+        made["Nearest recorded reaction, not finished"] = [[drafted(bank, one.people) for one in test]]
+        if "Nearest recorded reaction" in methods:
+            nearest: Any = engine.pipeline("nearest")
+            nearest.bank = bank
+        for method in methods:
             made[method] = []
             for seed in range(options.samples):
                 print(f"{dataset}: {method}, seed {seed}", file=sys.stderr, flush=True)
@@ -242,6 +245,11 @@ def _run(options: argparse.Namespace) -> None:
             "readouts": {method: readouts(test, people) for method, people in shown.items()},
         }
         write_scores(options, scores, table(scores))
+
+
+def _is_installed(name: str, weights: Path) -> bool:
+    """True for a method whose weights are in a folder, with those of the methods that it needs."""
+    return all(known_method(each).installed(weights) for each in (name, *known_method(name).needs))
 
 
 def reacted(engine: Engine, pair: Reaction, classes: Sequence[str], seed: int, method: str) -> Array:

@@ -92,18 +92,21 @@ class Trainer(DuetTrainer):
         workers: int = 0,
     ) -> None:
         torch.manual_seed(settings.seed)
-        self.begin(settings, out, Data(scenes, settings, cache or out, device), device, workers)
-        model, self.share, self.teacher = new_model(settings, self.data), share, None
+        self.share, self.teacher, model = share, None, None
         if teacher is not None:
             self.teacher, folder = load_network(teacher, CompactInterGen)
             self.bank = load_captions(folder)
             model = shallower(self.teacher, blocks or range(self.teacher.config.num_layers))
+            settings = replace(settings, **common(model.config, Settings))
             model.denoiser.requires_grad_()
             self.teacher.to(device)
-        elif init is not None and init.is_dir():
-            without_touches(load_network(init, CompactInterGen)[0]).loaded(model)
-        elif init is not None:
-            checkpoint.restore_part(init, "ema", model)
+        self.begin(settings, out, Data(scenes, settings, cache or out, device), device, workers)
+        if model is None:
+            model = new_model(settings, self.data)
+            if init is not None and init.is_dir():
+                without_touches(load_network(init, CompactInterGen)[0]).loaded(model)
+            elif init is not None:
+                checkpoint.restore_part(init, "ema", model)
         self.began = copy.deepcopy(model)
         self.start(model, device)
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
@@ -163,7 +166,10 @@ class Trainer(DuetTrainer):
 
 def _begin(options: argparse.Namespace, settings: Settings) -> Trainer:
     given = {name: getattr(options, name) for name in ("init", "share", "teacher", "blocks", "device", "workers")}
-    trainer = Trainer(load(options.scenes), settings, options.out, **given)
+    scenes = load(options.scenes)
+    if options.export is not None and options.teacher is None and not scenes.split("test"):
+        raise InputError("The scenes have no test split, by which what is exported is set: prepare a corpus with both.")
+    trainer = Trainer(scenes, settings, options.out, **given)
     if options.compile:
         trainer.model.denoiser.compile(dynamic=True)
     return trainer

@@ -78,9 +78,10 @@ def without_touches(model: CompactInterGen | CompactReGenNet) -> Released:
 def with_touches(model: Network, scenes: Scenes) -> Network:
     """The same network with a fitted touch reader; as it was, where too few scenes of the corpus touch.
 
-    Its accuracy is printed where there are test captions.
+    Scenes without a label say nothing of touches. Its accuracy is printed where there are test captions.
     """
-    counts = Counter(touch_of(r, mirror=m) for r in scenes.split("train") for m in (False, True))
+    train, test = ([row for row in scenes.split(name) if row.get("label")] for name in ("train", "test"))
+    counts = Counter(touch_of(r, mirror=m) for r in train for m in (False, True))
     known = tuple(sorted(t for t, count in counts.items() if t and count >= RARE))
     if not known:
         return model
@@ -90,7 +91,7 @@ def with_touches(model: Network, scenes: Scenes) -> Network:
     assert reader is not None
 
     generator = torch.Generator().manual_seed(0)
-    touches = examples(scenes.split("train"))
+    touches = examples(train)
     chosen = [touches[i] for i in torch.randperm(len(touches), generator=generator)[:MOST].tolist()]
     inputs, labels = _tensors(result, chosen)
     torch.manual_seed(0)
@@ -100,7 +101,7 @@ def with_touches(model: Network, scenes: Scenes) -> Network:
         return F.cross_entropy(reader(inputs[rows]), labels[rows], label_smoothing=0.02)
 
     fit(reader, loss, STEPS, rate=2e-3, weight_decay=1e-2)
-    if unseen := examples(scenes.split("test"))[:MOST]:
+    if unseen := examples(test)[:MOST]:
         seen, wanted = _tensors(result, unseen)
         right = (reader(seen).argmax(-1) == wanted).float().mean()
         print(f"touches read from test captions: {right:.1%}")

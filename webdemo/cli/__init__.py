@@ -52,6 +52,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         options = parser.parse_args(argv)
         job: Callable[[argparse.Namespace], dict[str, Any]] = options.job
         answer = job(options)
+        print(json.dumps(answer | {"wall_seconds": round(time.perf_counter() - began, 3)}), flush=True)
     except InputError as error:
         print(" ".join(str(error).split()), file=sys.stderr)
         return 2
@@ -62,5 +63,4 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("Stopped; nothing was written.", file=sys.stderr)
         return 130
-    print(json.dumps(answer | {"wall_seconds": round(time.perf_counter() - began, 3)}))
     return 0

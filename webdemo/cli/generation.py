@@ -10,7 +10,7 @@ from typing import Any
 
 from acts.plan import Plan, plan_of
 from motion import InputError
-from webdemo.inference.methods import AUTOMATIC, automatic, by_class
+from webdemo.inference.methods import by_class, reactor
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
@@ -93,6 +93,9 @@ def add_react(commands: Any) -> None:
 def react(options: argparse.Namespace) -> dict[str, Any]:
     """Runs a :class:`ReactRequest` on one person of a motion file and writes the duets."""
     check_out(options.out)
+    mode = options.mode or ReactRequest.mode
+    chosen = reactor(options.model, options.prompt, options.role, mode)
+    options.model = chosen.name
     actor, pose = read_actor(
         options.actor,
         person=options.person,
@@ -100,10 +103,8 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
         end=options.end,
         keep_start=options.keep_start,
         choices=reading_choices(options),
+        seconds=chosen.seconds,
     )
-    mode = options.mode or ReactRequest.mode
-    if options.model == AUTOMATIC:
-        options.model = automatic(options.prompt, options.role, mode).name
     fields = sampling_fields(options) | {"first_pose": pose}
     request = ReactRequest(actor=actor, prompt=options.prompt, role=options.role, mode=mode, **fields)
     result = run(request)

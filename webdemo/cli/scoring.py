@@ -127,6 +127,12 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         silence(engine.pipeline(scored.name))
     if options.places:
         leave_places(engine.pipeline(scored.name))
+    if options.motions and not digest:
+        raise InputError(
+            f"{scored.label} says nothing of its weights, so its motions cannot be kept: leave --motions out."
+        )
+    if "generate" not in scored.tasks:  # its actors are the default model's
+        digest += engine.pipeline(SamplingRequest.model).digest
     kept = _folder(options.motions, scoring, digest)
     duets = [[_motion(engine, scoring, s, seed, kept) for seed in range(options.seeds)] for s in sentences]
     print(file=sys.stderr)

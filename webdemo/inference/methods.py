@@ -69,6 +69,11 @@ def automatic(prompt: str, role: str, mode: str = "offline") -> Method:
     return best if best.installed(WEIGHTS) else candidates[0]
 
 
+def reactor(name: str, prompt: str, role: str, mode: str = "offline") -> Method:
+    """A method for a reaction by name, or the one that :func:`automatic` chooses; raises InputError as method."""
+    return automatic(prompt, role, mode) if name == AUTOMATIC else method(name, "react")
+
+
 def label_of(name: str) -> str:
     """The label of a method; its name if it is not registered, as in an old history."""
     _register_all()

@@ -15,7 +15,7 @@ import gradio as gr
 import acts
 from motion import InputError
 from motion.formats import ImportChoices, read
-from webdemo.inference.methods import AUTOMATIC, by_class, methods
+from webdemo.inference.methods import AUTOMATIC, by_class, methods, reactor
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
 from webdemo.inference.requests.actor import read_actor
 from webdemo.inference.requests.predict import LONGEST, PredictRequest, PredictResult
@@ -239,7 +239,8 @@ class ReactEndpoint(Endpoint):
                 raise InputError("There is no actor: send a motion file, such as a .bvh.")
             part = {name: asked.pop(name) for name in ("person", "start", "end", "keep_start")}
             part = {**part, "person": part["person"] or None, "end": part["end"] or None}
-            clip, pose = read_actor(actor, **part, choices=reading_choices(asked))
+            seconds = reactor(asked["model"], prompt or "", asked["role"], asked["mode"]).seconds
+            clip, pose = read_actor(actor, **part, choices=reading_choices(asked), seconds=seconds)
             return ReactRequest(actor=clip, first_pose=pose, prompt=prompt or "", steps=steps, **asked)
 
         title = (prompt or "").strip() or f"Reaction to {Path(actor or '').stem}"

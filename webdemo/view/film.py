@@ -26,7 +26,8 @@ SIZES = (64, 3840)
 RATES = (1.0, 60.0)
 SIZE = (1280, 720)
 FPS = 30.0
-_GIF_FPS = 25.0
+_GIF_DELAY = 4
+"""Hundredths of a second for which a picture of a GIF is shown, at least; they are whole."""
 """GIF counts in hundredths of a second and browsers slow down what is shown for one: 25 is its best rate."""
 MOST_GIF = 400_000_000
 """Pixels of a GIF's pictures together, a byte each: all are held until the last."""
@@ -80,7 +81,7 @@ def write_film(
     path, style = Path(path), style or Style()
     suffix = path.suffix.lower()
     _check(suffix, fps, size, panes)
-    rate = min(fps, _GIF_FPS) if suffix == ".gif" else fps
+    rate = 100 / max(_GIF_DELAY, round(100 / fps)) if suffix == ".gif" else fps
     seconds = max(pane.motion.seconds for pane in panes)
     times = np.arange(max(1, round(seconds * rate))) / rate
     if suffix == ".gif" and len(times) * size[0] * size[1] > MOST_GIF:

@@ -191,7 +191,7 @@ export class Drawing {
     };
     const places = this.on ? this.places : [];
     for (const grip of this.grips.children) lay(grip, places["ab".indexOf(grip.dataset.person)]);
-    const long = this.paths.filter(({ points }) => points.length > 1);
+    const long = this.player.directing.alone ? this.paths.filter(({ points }) => points.length > 1) : [];
     while (this.lengths.children.length > long.length) this.lengths.lastChild.remove();
     while (this.lengths.children.length < long.length) this.lengths.append(node("span"));
     long.forEach(({ person, points }, i) => {

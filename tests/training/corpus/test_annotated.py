@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from motion.metrics.sentences import load_sentences
 from motion.transforms import canonicalize
 from tests.motion.bodies import marching
 from tests.training.trainers.runs import SETTINGS, SIZES, flags
@@ -33,7 +34,9 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (folder / "motions_processed" / person).mkdir(parents=True)
         np.save(folder / "motions_processed" / person / "7.npy", frames_of(positions))
     (folder / "annots").mkdir()
-    (folder / "annots" / "7.txt").write_text("Two people march.\n\nThey walk in step.\nBoth lift their knees.\n")
+    kept_out = load_sentences()[0].words  # by which networks are judged
+    said = f"Two people march.\n\n{kept_out}\nThey walk in step.\nBoth lift their knees.\n"
+    (folder / "annots" / "7.txt").write_text(said)
     return folder
 
 
@@ -58,6 +61,8 @@ def test_the_trainer_of_our_own_corpus_runs_on_it(corpus: Path, tmp_path: Path) 
     sizes = flags(replace(SETTINGS, batch=1, steps=10), *SIZES, "steps")
     assert intergen.main(["--scenes", str(scenes), "--out", str(tmp_path / "run"), *sizes]) == 0
     assert '"step": 10' in (tmp_path / "run" / "log.jsonl").read_text()
+    words = ["--scenes", str(scenes), "--out", str(tmp_path / "other"), "--export", str(tmp_path / "made")]
+    assert intergen.main([*words, *sizes]) == 2 and not (tmp_path / "other").exists(), "there is no test split"
 
 
 def test_lists_give_the_split_and_what_is_damaged_is_left_out(

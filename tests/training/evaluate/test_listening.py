@@ -34,5 +34,9 @@ def test_the_command_reads_a_folder_of_motions(tmp_path: Path, capsys: pytest.Ca
         np.save(tmp_path / f"{name}.npy", standing(raised=raised))
     assert main([str(tmp_path)]) == 0
     assert "1.0 cm apart, of two sentences of a seed 2.0 cm" in capsys.readouterr().out
+    (tmp_path / "plain").mkdir()
+    np.save(tmp_path / "plain" / "bow-2e-0.npy", standing())
+    assert main([str(tmp_path)]) == 2 and "several settings" in capsys.readouterr().err
+    (tmp_path / "plain" / "bow-2e-0.npy").unlink()
     (tmp_path / "bow-2e-0.npy").unlink()
     assert main([str(tmp_path)]) == 2

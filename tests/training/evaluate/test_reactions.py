@@ -1,6 +1,7 @@
 """The scores of reactions: a classifier that learns, and distances that say what they should."""
 
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from training.evaluate.deep_gru import accuracy, deep_features, diversity_score,
 from training.evaluate.reactions import (
     METHODS,
     Reaction,
+    _is_installed,
     drafted,
     label_of,
     long_enough,
@@ -24,6 +26,7 @@ from training.evaluate.reactions import (
     zero_velocity,
 )
 from webdemo.inference import Engine
+from webdemo.inference.methods import WEIGHTS
 from webdemo.inference.pipelines.nearest import Bank
 
 
@@ -135,3 +138,9 @@ def test_all_listed_clips_count_and_approaching_and_departing_are_one_class_of_s
     assert classes == ["kick", "walking"] and [len(train), len(test)] == [3, 3]
     assert [reaction.label for reaction in test] == [1, 1, 0]
     assert label_of(Pair(people, "approach", "k3hi", "x", False, 0.0)) == "approach"
+
+
+def test_methods_whose_weights_are_not_all_there_are_left_out(tmp_path: Path) -> None:
+    assert _is_installed("regennet", WEIGHTS) and _is_installed("nearest", WEIGHTS)
+    (tmp_path / "nearest").symlink_to(WEIGHTS / "nearest")
+    assert not _is_installed("nearest", tmp_path), "it needs another"

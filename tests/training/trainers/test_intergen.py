@@ -17,6 +17,7 @@ from motion import InputError
 from tests.training.trainers.runs import SETTINGS, SIZES, begin, flags, prepared, resumed, write_corpus
 from training import prepare
 from training.core import checkpoint
+from training.evaluate import held_out
 from training.trainers import intergen
 from webdemo.inference import GenerateRequest, Result
 from webdemo.inference.engine import Engine
@@ -84,6 +85,8 @@ def test_a_network_of_fewer_blocks_learns_from_a_shipped_one(scenes: Path, train
     assert intergen.main([*words, "1", "--out", str(tmp_path / "run"), "--export", str(tmp_path / "made")]) == 0
     teacher, made = (load_network(tmp_path / name, CompactInterGen)[0] for name in ("teacher", "made"))
     assert (teacher.config.num_layers, made.config.num_layers) == (2, 1)
+    again = begin(scenes, tmp_path / "again", teacher=tmp_path / "made")
+    assert held_out.load_model(tmp_path / "run", again.data).config.num_layers == 1
     text = made.conditioner.state_dict()
     assert all(torch.equal(value, text[name]) for name, value in teacher.conditioner.state_dict().items())
     assert intergen.main([*words, "2", "--out", str(tmp_path / "other")]) == 2

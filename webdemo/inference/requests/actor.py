@@ -119,6 +119,7 @@ def read_actor(
     end: float | None = None,
     keep_start: bool = False,
     choices: ImportChoices | None = None,
+    seconds: tuple[float, float] = SECONDS,
 ) -> tuple[Clip, Array | None]:
     """One person of a motion file, trimmed, on SMPL22 and at 30 fps; only what is used is fitted.
 
@@ -127,15 +128,16 @@ def read_actor(
         person, start, end: as in :func:`choose_actor`.
         keep_start: also give :func:`other_pose`, else None.
         choices: what is known of the file.
+        seconds: the shortest and the longest part that the method takes.
 
     Raises:
-        InputError: if the file or a choice is wrong, or the part longer than a network takes.
+        InputError: if the file or a choice is wrong, or the part shorter or longer than that.
     """
     name = Path(path).name
     people = import_motion(Path(path), name=name, choices=choices).people
     clip = choose_actor(people, person=person, start=start, end=end, name=name)
     pose = other_pose(people, person=person, start=start, name=name) if keep_start else None
-    check_length(clip, SECONDS)
+    check_length(clip, seconds)
     return replace(to_smpl(clip), name=name), pose
 
 

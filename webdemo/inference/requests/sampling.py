@@ -198,10 +198,8 @@ class ReactRequest(SamplingRequest):
     def __post_init__(self) -> None:
         prompt_of(self.prompt, needed=False)
         choice("Role", self.role, ROLES)
-        if self.model == methods.AUTOMATIC:
-            chosen = methods.automatic(self.prompt, self.role, self.mode)
-            object.__setattr__(self, "model", chosen.name)
-        method = methods.method(self.model, "react")
+        method = methods.reactor(self.model, self.prompt, self.role, self.mode)
+        object.__setattr__(self, "model", method.name)
         modes = [variant.mode for variant in method.variants]
         if self.mode not in modes:
             raise InputError(f"{method.label} has no mode {self.mode!r:.40}: choose {' or '.join(modes)}.")

@@ -54,6 +54,10 @@ class MotionPlayer(Part):
     declared: ClassVar = {"busy": "", "progress": None}
 
 
+_NONE = -1
+"""The progress of what has none: Gradio leaves None out, and the page keeps what it had."""
+
+
 def busy(text: str = "", *, progress: float | None = None) -> dict[str, Any]:
     """An update that lays a message over the player; without text it takes the message away.
 
@@ -61,12 +65,12 @@ def busy(text: str = "", *, progress: float | None = None) -> dict[str, Any]:
         text: such as ``"Step 12 of 50"``.
         progress: 0 to 1 for the bar under it, None for none.
     """
-    return gr.update(busy=text, progress=progress)
+    return gr.update(busy=text, progress=_NONE if progress is None else progress)
 
 
 def show(payload: Payload | None) -> dict[str, Any]:
     """An update that shows a payload and takes the message away."""
-    return gr.update(value=payload, busy="", progress=None)
+    return gr.update(value=payload, busy="", progress=_NONE)
 
 
 def shown_roles(manifest: Mapping[str, Any]) -> tuple[str, str]:

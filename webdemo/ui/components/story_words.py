@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -140,4 +141,4 @@ def written(text: str, story: Any) -> Updates:
         return unchanged if empty else (gr.skip(), status(error_line(error), tone="warning"), gr.skip())
     shown = {name: laid[name] for name in ("beats", "paths", "poses")}
     line = status(f"{counted(len(request.beats), 'beat').capitalize()}, {request.seconds:g} s: press Generate.")
-    return gr.update(laid=shown), line, gr.skip() if said == text else said
+    return gr.update(laid=shown | {"at": time.time()}), line, gr.skip() if said == text else said
