@@ -13,8 +13,9 @@ from acts.staging.window import KnownPath, Window
 from motion import InputError
 from motion.metrics.sentences import load_sentences
 from motion.transforms import Placement
-from webdemo.cli.scoring import Scoring, _folder, leave_places
+from webdemo.cli.scoring import Scoring, _folder
 from webdemo.inference import GenerateRequest
+from webdemo.inference.ablations import leave_places
 from webdemo.inference.story.sentences import as_scene
 
 SENTENCE = next(s for s in load_sentences() if s.id == "shake-part")

@@ -10,7 +10,7 @@ from models.intergen.compact import CaptionBank, CompactConfig, CompactInterGen,
 from models.motion_tokens import encode
 from models.text import MiniLM, TextConditioner
 from motion import SMPL22
-from webdemo.cli.scoring import silence
+from webdemo.inference.ablations import silence
 from webdemo.inference.engine import Engine
 
 CAPTIONS = ("Two people shake hands.", "One person waves.", "They walk away from each other.")

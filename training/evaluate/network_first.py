@@ -24,7 +24,7 @@ from acts.shapes import Shape
 from motion import Duet
 from motion.formats.files import write_text
 from training.core.shell import exit_code
-from webdemo.cli.scoring import leave_places, silence
+from webdemo.inference.ablations import leave_places, silence
 from webdemo.inference.pipelines.scene import Parts
 from webdemo.inference.run import Result
 from webdemo.inference.story.beats import Beat

@@ -75,12 +75,17 @@ def without_touches(model: CompactInterGen | CompactReGenNet) -> Released:
     return Released(known, type(model).__name__.removeprefix("Compact"))
 
 
+def _says(row: dict[str, Any]) -> bool:
+    return bool(row.get("label") or row["events"])
+
+
 def with_touches(model: Network, scenes: Scenes) -> Network:
     """The same network with a fitted touch reader; as it was, where too few scenes of the corpus touch.
 
-    Scenes without a label say nothing of touches. Its accuracy is printed where there are test captions.
+    Scenes with neither a label nor events say nothing of touches. The reader's accuracy is printed where there are test
+    captions.
     """
-    train, test = ([row for row in scenes.split(name) if row.get("label")] for name in ("train", "test"))
+    train, test = ([row for row in scenes.split(name) if _says(row)] for name in ("train", "test"))
     counts = Counter(touch_of(r, mirror=m) for r in train for m in (False, True))
     known = tuple(sorted(t for t, count in counts.items() if t and count >= RARE))
     if not known:

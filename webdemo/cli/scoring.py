@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from acts.staging.given import places_alone, plan_parts
 from motion import Duet, InputError
 from motion.formats.files import write_text
+from webdemo.inference.ablations import leave_places, silence
 from webdemo.inference.method import Method
 from webdemo.inference.methods import method, methods
 from webdemo.inference.requests import GenerateRequest, ReactRequest, SamplingRequest
@@ -168,30 +168,6 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         "physical": scores["physical"],
         "files": [] if options.out is None else [str(options.out)],
     }
-
-
-def silence(pipeline: Any) -> None:
-    """Puts zeros, a network's mean pose, in the place of all that a diffusion network predicts from now on.
-
-    Raises:
-        InputError: for a method that has none.
-    """
-    network: Any = getattr(model := getattr(pipeline, "model", None), "denoiser", model)
-    if network is None or not hasattr(network, "guided"):
-        raise InputError(f"{pipeline.name} has no network that denoises: leave --zeros out.")
-    network.guided = lambda x, *_, **__: x.new_zeros(x.shape)
-
-
-def leave_places(pipeline: Any) -> None:
-    """Leaves of the plan only the places and headings, for all that a network of scenes makes from now on.
-
-    Raises:
-        InputError: for a method that makes no scenes.
-    """
-    scenes = getattr(pipeline, "scenes", None)
-    if scenes is None:
-        raise InputError(f"{pipeline.name} has no plan: leave --places out.")
-    scenes.planner = lambda *asked: places_alone(plan_parts(*asked))
 
 
 def _chosen(options: argparse.Namespace) -> Sequence[Sentence]:

@@ -4,6 +4,7 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from tests.training.trainers.runs import SETTINGS, SIZES, begin, flags, prepared
 from training import prepare
 from training.core import checkpoint
 from training.evaluate import held_out
-from training.trainers import intergen
+from training.trainers import intergen, touch
 from webdemo.inference import GenerateRequest, Result
 from webdemo.inference.engine import Engine
 
@@ -160,5 +161,11 @@ def test_a_shipped_network_can_be_trained_on(
     theirs = shipped.state_dict()
     assert set(theirs) - set(ours) == {key for key in theirs if key.startswith("touch_reader.")}
     assert all(torch.equal(value, theirs[key]) for key, value in ours.items())
+    loaded, learned, examples = prepare.load(scenes), list[dict[str, Any]](), touch.examples
+    loaded.rows[0] |= {"events": {}, "label": None}  # of which nobody knows what touches
+    monkeypatch.setattr(touch, "examples", lambda rows: (learned.extend(rows), examples(rows))[1])
+    monkeypatch.setattr(touch, "fit", lambda *_, **__: None)
+    touch.with_touches(shipped, loaded)
+    assert loaded.rows[1] in learned and loaded.rows[0] not in learned
     with pytest.raises(InputError, match="not InterGen weights of one size"):
         begin(scenes, tmp_path / "wide", replace(SETTINGS, latent_dim=64), init=out)

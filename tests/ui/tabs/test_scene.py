@@ -112,7 +112,7 @@ def test_words_that_were_written_are_laid_out(tab: SceneTab) -> None:
     laid = lay_out("They meet. Then they hug.")[1]
     line_up, line, words = written("They meet. Then they bow.", laid)
     assert [beat["words"] for beat in line_up["laid"]["beats"]] == ["They meet.", "They bow."]
-    assert set(line_up["laid"]) == {"beats", "paths", "poses"}, "ticks and the span are the line's own"
+    assert set(line_up["laid"]) == {"beats", "paths", "poses", "at"}, "ticks and the span are the line's own"
     assert "2 beats" in line and words == gr.skip()
     nothing = (gr.skip(),) * 3
     assert written("They meet. Then they hug.", laid) == nothing
