@@ -36,7 +36,7 @@ _DIRECTIONS = frozenset(("across", "along", "around", "back", "by", "in", "out",
 _PARTICLES = PREPOSITIONS | {"back"}
 FAMILIES = {
     "walk+": "walk|go|come|step|stroll|march|wander|stride|saunter|amble|trot|head|move|hurry|rush|drift|gait+",
-    "gait+": "limp|hobble|skip|prance|gallop|crawl|stagger|totter|lurch|reel|weave|teeter",
+    "gait+": "sneak|creep|tiptoe|slink|prowl|limp|hobble|skip|prance|gallop|crawl|stagger|totter|lurch|reel|weave|teeter",
     "run+": "run|sprint|dash|race|bolt|charge|dart|jog",
 }
 """Verbs that an entry need not list."""

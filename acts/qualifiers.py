@@ -82,7 +82,7 @@ def qualifiers(
     if FROM_BEHIND in act.manner:
         yield "from where", f"happens(both({mask}, behind({who})))" if mask else ""
     if ON_TIPTOE in act.manner:
-        yield "in which manner", f"happens(both(heels_up({who}), walks({who}, 0.3, 0.1)), 0.5)"
+        yield "in which manner", f"happens(both(heels_up({who}, 0.03), walks({who}, 0.3, 0.1)), 0.5)"
     for gait in GAITS.keys() & act.manner:
         yield "in which manner", _GAITS.get(gait, "").format(who=who)
     told = {FROM_BEHIND, ON_TIPTOE, *GAITS, *closed("fillers"), *vocabulary().speeds}

@@ -23,7 +23,7 @@ _GENTLE = frozenset(("care", "touch"))
 """Groups of acts that somebody lets be done to them."""
 _BODILY = frozenset(("body", "ways", "moves", "stage"))
 """Groups of acts of the whole body."""
-_OWN_ARMS = frozenset(("creep-up", "sneak", "sneak-away", "stagger", "skip", "moonwalk", "strut", "stumble", "dive"))
+_OWN_ARMS = frozenset(("sneak", "stagger", "skip", "moonwalk", "strut", "stumble", "dive"))
 """Acts of which arms of their own are part."""
 _HANDS_FREE = frozenset(("go", "turn", "stay", "place", "posture"))
 """Shapes that need no hands."""

@@ -128,7 +128,9 @@ class Editor {
   measure(lengths) {
     if (!lengths || lengths.length !== this.story.beats.length) return;
     const story = edits.measured(this.story, lengths);
-    if (plain(story) !== plain(this.story)) this.hold(story);
+    const moved = JSON.stringify(story.poses) !== JSON.stringify(this.story.poses);
+    this.story = story;
+    if (moved) this.hold(story); // poses move with their beats
     this.draw();
   }
 

@@ -10,6 +10,8 @@ import pytest
 
 from acts import lexicon
 from acts.checking import cast
+from acts.plan import ON_TIPTOE, Act
+from acts.qualifiers import qualifiers
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check, measured
 from motion.transforms import facing
@@ -21,6 +23,7 @@ TALKS = {"talk", "argue", "nod", "bend-arm", "look-up"}
 WALKS = {"walk-up", "walk-away", "walk-past", "walk-ahead", "move-about", "step-forward", "part", "step-over"}
 WALKS |= {"cross-way", "return", "go-back", "exit", "enter", "back-turned", "copy", "mirror"}
 """What two people do who walk past each other: come near, go away, leave the other behind, step alike."""
+WALK = lexicon().entries["walk-ahead"]
 PAIRS = {
     "idle": [
         ("idle_1", "idle_2", 1.3),
@@ -70,3 +73,11 @@ def test_every_rule_that_fails_says_what_is_missing() -> None:
     rules = [cast(rule, "a", "b") for entry in lexicon().entries.values() for rule in entry.rule]
     said = {rule: measured(rule, motion, lacking=True) for rule in rules if not check(rule, motion)}
     assert not [rule for rule, reason in said.items() if not re.search(r"needed|not ", reason)]
+
+
+def test_who_walks_as_usual_is_not_on_tiptoe() -> None:
+    for names in PAIRS["walk by"]:
+        motion = pair(*names)
+        for who in "ab":
+            asked = qualifiers(Act(id="1", act="walk-ahead", agents=(who,), manner=(ON_TIPTOE,)), WALK, who, "", "")
+            assert not any(check(rule, motion) for _, rule in asked if rule)

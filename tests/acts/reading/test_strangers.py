@@ -157,7 +157,7 @@ from tests.acts.reading.reading import told
         ),
         ("A figure jumps, and it waves.", [("jump", "a", None), ("wave", "a", "b")]),
         # a particle that only says which way
-        ("A tiptoes up and taps B on the shoulder.", [("sneak", "a", None), ("pat", "a", "b")]),
+        ("A tiptoes up and taps B on the shoulder.", [("walk-up", "a", None), ("pat", "a", "b")]),
         # a verb within a word
         ("They line-dance.", [("dance", "ab", None)]),
         # verbs that mean too many things stand for no others

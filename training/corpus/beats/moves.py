@@ -77,10 +77,15 @@ def come(play: Play, i: int, distance: float, *, action: str = "walk", minor: bo
     both = far > 1.6 and rng.random() < 0.3
     take = close_in(play, i, distance, both=both, action=action)
     if far > 0.5:
-        cue = "creep-up" if action == "sneak" else f"{action}-up"
+        sneaks = action == "sneak"
+        cue = "walk-up" if sneaks else f"{action}-up"
         known = {"minor": bool(rng.random() < 0.4) if minor is None else minor}
         play.note(
-            (cue, cue if both else STILL), start, i=i, styles=(take.style if take else "normal", "normal"), **known
+            (cue, cue if both else STILL),
+            start,
+            i=i,
+            styles=(action if sneaks else take.style if take else "normal", "normal"),
+            **known,
         )
     return play.sync()
 
