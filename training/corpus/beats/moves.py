@@ -79,14 +79,9 @@ def come(play: Play, i: int, distance: float, *, action: str = "walk", minor: bo
     if far > 0.5:
         sneaks = action == "sneak"
         cue = "walk-up" if sneaks else f"{action}-up"
+        style = action if sneaks else take.style if take else "normal"
         known = {"minor": bool(rng.random() < 0.4) if minor is None else minor}
-        play.note(
-            (cue, cue if both else STILL),
-            start,
-            i=i,
-            styles=(action if sneaks else take.style if take else "normal", "normal"),
-            **known,
-        )
+        play.note((cue, cue if both else STILL), start, i=i, styles=(style, "normal"), **known)
     return play.sync()
 
 
