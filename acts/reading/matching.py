@@ -247,7 +247,8 @@ def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[s
         known: the lexicon, whose acts may be named: "shows a squat".
     """
     verbs, subject, ref = vocabulary().verbs, event.subject, event.object
-    repeats = event.lemma in verbs["repeats"]
+    holds = event.lemma == "hold" and ref is not None and ref.lemma == "it"  # "salutes and holds it"
+    repeats = event.lemma in verbs["repeats"] or holds
     same = closed("same") | {last.thing or last.part, *(["thing"] if "same" in event.words else [])}
     named = ref is None or ref.kind == "person" or ref.lemma in same
     if ref is not None and repeats:

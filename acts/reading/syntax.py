@@ -346,7 +346,7 @@ class ClauseTree:
         comma = token.left_edge.i - 1
         before = self.doc[comma - 1] if comma > 0 and self.doc[comma].text == "," else token
         verb = next((verb for verb in (before, *before.ancestors) if is_finite(verb) and self.is_clause(verb)), token)
-        return verb if verb.dep_ == "advcl" and verb.i < comma and has(verb, "nsubj") else None
+        return verb if verb.dep_ in ("advcl", "relcl") and verb.i < comma and has(verb, "nsubj") else None
 
     def _listed(self, token: Token) -> Token | None:
         """The verb of a relative clause that goes on with a list: "pushes B, who stumbles, gets up and runs"."""

@@ -84,6 +84,9 @@ def test_what_is_done_instead_is_all_that_is_done() -> None:
         ("They jump in sync.", ["ab jump"]),
         # whose participle stands behind a comma, and what is gone after in order to do something
         ("One talks while the other waits, tapping a foot.", ["a talk", "b stand-still", "b tap-foot"]),
+        ("He listens to a client who sits there, wringing her hands.", ["a listen b", "b sit-down", "b rub-hands"]),
+        ("B holds the lunge.", ["b lunge"]),
+        ("She salutes and holds it for two seconds.", ["a salute b", "a salute b"]),
         ("She hurries after her to apologize.", ["a follow b", "a beg b"]),
         ("She asks him for a dance.", ["a tell b", "a dance b (wished)"]),
         ("She stands up for her brother.", ["a shield b"]),
