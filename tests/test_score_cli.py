@@ -13,6 +13,7 @@ from acts.staging.window import KnownPath, Window
 from motion import InputError
 from motion.metrics.sentences import load_sentences
 from motion.transforms import Placement
+from webdemo import cli
 from webdemo.cli.scoring import Scoring, _folder
 from webdemo.inference import GenerateRequest
 from webdemo.inference.ablations import leave_places
@@ -43,3 +44,12 @@ def test_of_a_plan_the_places_are_left() -> None:
     assert parts and all(isinstance(part, KnownPath) for part in parts)
     with pytest.raises(InputError, match="leave --places out"):
         leave_places(SimpleNamespace(name="regennet"))
+
+
+def test_motions_are_not_kept_where_no_digest_names_the_weights(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    blank = SimpleNamespace(pipeline=lambda _: SimpleNamespace(digest=""))
+    monkeypatch.setattr("webdemo.inference.engine.Engine", lambda: blank)
+    assert cli.main(["score", "--motions", str(tmp_path)]) == 2
+    assert "leave --motions out" in capsys.readouterr().err

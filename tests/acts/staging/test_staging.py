@@ -240,3 +240,8 @@ def test_two_who_dance_are_a_couple_and_one_alone_or_beside_the_other_is_not() -
     alone = score("A dances.")
     assert not alone.hold and figures("A dances.") == {"a": ("dances", 0)} and alone.idle == {"b"}
     assert figures("They dance side by side.").keys() == {"a", "b"} and not score("They dance side by side.").hold
+
+
+def test_who_falls_back_is_caught_by_the_other() -> None:
+    touch = score("He falls back into her arms.").touch
+    assert touch is not None and touch.person == "b"

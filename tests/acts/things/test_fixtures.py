@@ -181,6 +181,8 @@ def test_what_is_handed_over_is_judged_by_the_thing():
     found = verdict("A gives B a flower.", furnished("A gives B a flower.", reaching())[1])
     assert found == (True, "it goes from hand to hand at 1.8 s")
     assert verdict("A gives B a cheque.", furnished("A gives B a cheque.")[1]) == (None, "no cheque is drawn")
+    gifts = "They exchange gifts."
+    assert verdict(gifts, furnished(gifts, reaching())[1]) == (None, "only one thing is drawn")
 
 
 def test_a_look_at_what_is_not_there_stays_unjudged():

@@ -35,6 +35,8 @@ def test_runs_are_compared_by_timestep(
                 for parameter in module.denoiser.out.parameters():
                     parameter.zero_()
         take(trainer, 0)
+    near, far = (held_out.errors(trainer.ema, trainer.data, "nothing", 1, k * trainer.data.std) for k in (1, 2))
+    torch.testing.assert_close(near, 4 * far)  # in the units that are asked for, whatever the network's are
     runs = [str(tmp_path / f"run-{seed}") for seed in (0, 1)]
     words = ["--scenes", str(scenes), "--cache", str(tmp_path), "--batches", "1", "--models", *runs]
     capsys.readouterr()
